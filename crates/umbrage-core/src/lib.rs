@@ -6,10 +6,18 @@
 pub mod bounds;
 pub mod camera;
 pub mod depth;
+pub mod fit;
+pub mod frustum;
+pub mod layout;
 pub mod light;
+pub mod lookup;
+pub mod plan;
 pub mod projection;
+pub mod technique;
+pub mod wgsl;
 
 pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
 pub use depth::{DEPTH, DepthConvention};
+pub use frustum::Frustum;
 pub use light::{Light, LightError, LightKind};

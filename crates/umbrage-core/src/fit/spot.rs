@@ -1,0 +1,121 @@
+//! The view of a spot light: its cone, with near and far fitted to what is in it.
+
+use super::{FitError, FitOptions, ShadowView};
+use crate::bounds::Aabb;
+use crate::depth::DEPTH;
+use crate::frustum::Frustum;
+use crate::light::Light;
+use crate::projection::perspective;
+use glam::Mat4;
+
+pub(super) fn fit(
+    light: &Light,
+    outer_rad: f32,
+    bounds_world: &[Aabb],
+    options: &FitOptions,
+) -> Result<ShadowView, FitError> {
+    let world_from_light =
+        Mat4::from_translation(light.position_world) * Mat4::from_mat3(light.world_from_light_rotation());
+    let light_from_world = world_from_light.inverse();
+    let tan_outer = outer_rad.tan();
+
+    let depth_of = |bounds: &Aabb| {
+        let depths = bounds.corners().map(|corner| -light_from_world.transform_point3(corner).z);
+        depths.into_iter().fold((f32::INFINITY, 0.0f32), |(least, most), d| (least.min(d), most.max(d)))
+    };
+
+    // The cone down to the farthest box tells which boxes count; their corners then tell the range.
+    let everything_m =
+        bounds_world.iter().filter(|b| !b.is_empty()).map(|b| depth_of(b).1).fold(0.0, f32::max);
+    let reach_m = light.far_m.or(light.range_m).unwrap_or(f32::INFINITY).min(everything_m * 1.001);
+    if reach_m <= 0.0 {
+        return Err(FitError::NothingInReach);
+    }
+    let widest = perspective(tan_outer, tan_outer, reach_m * 1e-6, reach_m, DEPTH) * light_from_world;
+    let cone = Frustum::from_clip(widest, DEPTH);
+    let (nearest_m, farthest_m) = bounds_world
+        .iter()
+        .filter(|b| cone.may_see(b))
+        .map(depth_of)
+        .fold((f32::INFINITY, 0.0f32), |(near, far), (least, most)| (near.min(least), far.max(most)));
+    if farthest_m <= 0.0 {
+        return Err(FitError::NothingInReach);
+    }
+
+    // A hair of room, so that a surface exactly on a plane is not lost to rounding.
+    let far_m = light.far_m.unwrap_or((farthest_m * 1.001).min(reach_m));
+    let near_m = light.near_m.unwrap_or((nearest_m * 0.999).max(far_m * options.least_near));
+    // Everything on one plane that faces the light, or a near plane that was asked for behind it: keep some depth.
+    let near_m = near_m.min(far_m * 0.99);
+    Ok(ShadowView {
+        light_from_world,
+        clip_from_light: perspective(tan_outer, tan_outer, near_m, far_m, DEPTH),
+        near_m,
+        far_m,
+        texel_m: 2.0 * tan_outer / options.size_texel as f32,
+        perspective: true,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit;
+    use super::*;
+    use crate::lookup::locate;
+    use glam::Vec3;
+
+    const OPTIONS: FitOptions = FitOptions { size_texel: 512, least_near: 1e-4 };
+
+    fn around(center: Vec3, half: f32) -> Aabb {
+        Aabb { min: center - half, max: center + half }
+    }
+
+    #[test]
+    fn near_and_far_hug_what_is_in_the_cone() {
+        let light = Light::spot(Vec3::new(0.0, 10.0, 0.0), Vec3::ZERO, 0.3, 0.5);
+        let seen =
+            [around(Vec3::ZERO, 1.0), around(Vec3::new(0.0, 4.0, 0.0), 0.5), around(Vec3::X * 90.0, 1.0)];
+        let view = fit(&light, &seen, &OPTIONS).expect("three boxes, two in the cone");
+        assert!(view.near_m <= 5.5 && view.near_m > 5.4, "near {}", view.near_m);
+        assert!(view.far_m >= 11.0 && view.far_m < 11.1, "far {}", view.far_m);
+        for corner in seen[0].corners() {
+            let at = locate(&view.texture_from_world(), corner);
+            assert!(at.inside && at.depth >= 0.0 && at.depth <= 1.0, "{at:?}");
+        }
+    }
+
+    #[test]
+    fn a_light_inside_a_box_keeps_a_near_plane() {
+        let light = Light::spot(Vec3::ZERO, Vec3::NEG_Y, 0.3, 0.5);
+        let view = fit(&light, &[around(Vec3::ZERO, 8.0)], &OPTIONS).expect("it is inside");
+        assert!(view.near_m > 0.0 && view.near_m < 0.01 && view.far_m > 8.0, "{view:?}");
+    }
+
+    #[test]
+    fn nothing_in_the_cone_is_said() {
+        let light = Light::spot(Vec3::ZERO, Vec3::NEG_Y, 0.3, 0.5);
+        assert_eq!(fit(&light, &[around(Vec3::Y * 20.0, 1.0)], &OPTIONS), Err(FitError::NothingInReach));
+        assert_eq!(fit(&light, &[], &OPTIONS), Err(FitError::NothingInReach));
+    }
+
+    #[test]
+    fn asked_for_planes_are_kept() {
+        let light = Light {
+            near_m: Some(1.0),
+            far_m: Some(30.0),
+            ..Light::spot(Vec3::Y * 9.0, Vec3::ZERO, 0.3, 0.5)
+        };
+        let view = fit(&light, &[around(Vec3::ZERO, 1.0)], &OPTIONS).expect("one box");
+        assert_eq!((view.near_m, view.far_m), (1.0, 30.0));
+    }
+
+    #[test]
+    fn any_scale_fits() {
+        for scale in [1e-3f32, 1.0, 1e5] {
+            let light = Light::spot(Vec3::Y * 10.0 * scale, Vec3::ZERO, 0.3, 0.5);
+            let view = fit(&light, &[around(Vec3::ZERO, scale)], &OPTIONS).expect("one box");
+            assert!((view.far_m / scale - 11.0).abs() < 0.05, "{scale}: {view:?}");
+            assert!(view.clip_from_world().is_finite(), "{scale}");
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The one table of techniques: command, listing, documentation, tests, benches and uniforms all come from it.
+//!
+//! A map technique is four independent choices (storage, projection, bias, filter), each a table of its own in
+//! [`choices`]. A [`Technique`] names a combination; [`Settings`] is one with its parameters.
+
+pub mod choices;
+mod settings;
+
+pub use choices::{Bias, Choice, Combination, Filter, Projection, Storage};
+pub use settings::{SettingError, Settings};
+
+/// Where an idea was published.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Authors and title.
+    pub paper: &'static str,
+    /// Year of publication.
+    pub year: u16,
+}
+
+/// A number that a user may turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Param {
+    /// Key on the command line and in files.
+    pub name: &'static str,
+    /// What a workbench writes beside its slider.
+    pub label: &'static str,
+    /// Unit, or empty for a bare number.
+    pub unit: &'static str,
+    /// Smallest value.
+    pub min: f32,
+    /// Largest value.
+    pub max: f32,
+    /// Sensible step of a slider; 1 when only whole numbers make sense.
+    pub step: f32,
+    /// Value when nothing is said.
+    pub default: ParamDefault,
+    /// What it does, in one sentence.
+    pub help: &'static str,
+    /// What it costs, in one clause.
+    pub cost: &'static str,
+}
+
+/// The value of a parameter that nobody set.
+#[derive(Clone, Copy, Debug)]
+pub enum ParamDefault {
+    /// Always the same.
+    Fixed(f32),
+    /// Follows from the rest of the combination.
+    Derived {
+        /// How, in words.
+        rule: &'static str,
+        /// How, in numbers.
+        value: fn(&Combination) -> f32,
+    },
+}
+
+/// What kind of thing makes the visibility.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// No shadow at all: V is 1 wherever the light shines.
+    None,
+    /// Depth seen from the light, compared.
+    Map,
+}
+
+impl Family {
+    /// One word.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Map => "map",
+        }
+    }
+}
+
+/// A named way to make shadows.
+#[derive(Clone, Copy, Debug)]
+pub struct Technique {
+    /// Name on the command line.
+    pub id: &'static str,
+    /// Name for people.
+    pub label: &'static str,
+    /// What it is and what it is for, in one sentence.
+    pub summary: &'static str,
+    /// What kind of thing makes the visibility.
+    pub family: Family,
+    /// Where it was published.
+    pub source: Option<Source>,
+    /// The four choices of a map.
+    pub combination: Option<Combination>,
+}
+
+/// The technique that is used when none is named.
+pub const DEFAULT: &str = "linear";
+
+const WILLIAMS: Source = Source { paper: "Williams, Casting Curved Shadows on Curved Surfaces", year: 1978 };
+const REEVES: Source =
+    Source { paper: "Reeves, Salesin and Cook, Rendering Antialiased Shadows with Depth Maps", year: 1987 };
+const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
+
+const LINEAR: Combination = Combination {
+    storage: Storage::Auto,
+    projection: Projection::Fitted,
+    bias: Bias::Slope,
+    filter: Filter::Linear,
+};
+
+/// All techniques, in the order in which they are best explained.
+pub const TECHNIQUES: &[Technique] = &[
+    Technique {
+        id: "unshadowed",
+        label: "Unshadowed",
+        summary: "light without shadow: what a shadow costs is measured against it",
+        family: Family::None,
+        source: None,
+        combination: None,
+    },
+    Technique {
+        id: "hard",
+        label: "Hard shadow map",
+        summary: "one comparison with the nearest texel: the cheapest map, with stairs at its edges",
+        family: Family::Map,
+        source: Some(WILLIAMS),
+        combination: Some(Combination { filter: Filter::Nearest, ..LINEAR }),
+    },
+    Technique {
+        id: "linear",
+        label: "Linear shadow map",
+        summary: "2x2 comparisons blended by the hardware: the stairs of `hard` become a texel-wide ramp",
+        family: Family::Map,
+        source: Some(REEVES),
+        combination: Some(LINEAR),
+    },
+    Technique {
+        id: "matrix-bias",
+        label: "Biased lookup matrix",
+        summary: "the bias stands in the lookup matrix, for hardware without polygon offset: uniform, so it leaks",
+        family: Family::Map,
+        source: Some(EVERITT),
+        combination: Some(Combination { bias: Bias::Matrix, ..LINEAR }),
+    },
+];
+
+/// The technique of that name.
+///
+/// # Errors
+/// [`SettingError::UnknownTechnique`] suggests the nearest name.
+pub fn find(id: &str) -> Result<&'static Technique, SettingError> {
+    TECHNIQUES.iter().find(|t| t.id == id).ok_or_else(|| SettingError::UnknownTechnique {
+        id: id.to_owned(),
+        suggestion: settings::suggest(id, TECHNIQUES.iter().map(|t| t.id)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_unique_and_the_default_exists() {
+        for (i, technique) in TECHNIQUES.iter().enumerate() {
+            assert!(TECHNIQUES[..i].iter().all(|other| other.id != technique.id), "{}", technique.id);
+            assert!(!technique.label.is_empty() && !technique.summary.is_empty(), "{}", technique.id);
+            assert_eq!(technique.family == Family::Map, technique.combination.is_some(), "{}", technique.id);
+        }
+        assert_eq!(find(DEFAULT).map(|t| t.id), Ok(DEFAULT));
+    }
+
+    #[test]
+    fn every_parameter_is_described_and_its_default_is_in_range() {
+        let mut seen = 0;
+        for combination in Combination::all() {
+            for param in combination.params() {
+                let value = match param.default {
+                    ParamDefault::Fixed(value) => value,
+                    ParamDefault::Derived { value, .. } => value(&combination),
+                };
+                assert!((param.min..=param.max).contains(&value), "{}: {value}", param.name);
+                assert!(
+                    param.step > 0.0 && !param.help.is_empty() && !param.cost.is_empty(),
+                    "{}",
+                    param.name
+                );
+                seen += 1;
+            }
+        }
+        assert!(seen > 0);
+    }
+}

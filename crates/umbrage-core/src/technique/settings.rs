@@ -1,0 +1,241 @@
+//! A technique with its parameters, as a user asked for it.
+
+use super::choices::{Bias, Combination, Filter, Projection, Storage};
+use super::{Param, ParamDefault, Technique, find};
+
+/// A technique with every choice and parameter settled.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The row of the table that it began with.
+    pub technique: &'static Technique,
+    /// The four choices, `None` without a map.
+    pub combination: Option<Combination>,
+    set: Vec<(&'static str, f32)>,
+}
+
+/// Why a setting was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingError {
+    /// No technique of that name.
+    #[error("there is no technique `{id}`{suggestion}; `umbrage techniques` lists them")]
+    UnknownTechnique {
+        /// What was asked for.
+        id: String,
+        /// `; did you mean ...?` or nothing.
+        suggestion: String,
+    },
+    /// No parameter or choice of that name in this technique.
+    #[error("`{technique}` has no setting `{key}`{suggestion}; it has {known}")]
+    UnknownKey {
+        /// Which technique.
+        technique: &'static str,
+        /// What was asked for.
+        key: String,
+        /// `; did you mean ...?` or nothing.
+        suggestion: String,
+        /// All that it has.
+        known: String,
+    },
+    /// A choice that is not in its table.
+    #[error("`{key}` cannot be `{value}`{suggestion}; it is one of {known}")]
+    UnknownChoice {
+        /// Which table.
+        key: String,
+        /// What was asked for.
+        value: String,
+        /// `; did you mean ...?` or nothing.
+        suggestion: String,
+        /// The table's names.
+        known: String,
+    },
+    /// Not a number, or not in its range.
+    #[error("`{key}` is `{value}`; it must be {allowed}")]
+    OutOfRange {
+        /// Which parameter.
+        key: String,
+        /// What was asked for.
+        value: String,
+        /// Range and unit.
+        allowed: String,
+    },
+    /// Two settings of one key.
+    #[error("`{key}` is set twice; keep one of them")]
+    Twice {
+        /// Which key.
+        key: String,
+    },
+    /// Choices that do not go together.
+    #[error("these do not go together: {reason}")]
+    Combination {
+        /// Why.
+        reason: &'static str,
+    },
+}
+
+/// `; did you mean ...?` when a known name is near enough, otherwise nothing.
+pub(super) fn suggest<'a>(asked: &str, known: impl Iterator<Item = &'a str>) -> String {
+    known
+        .map(|name| (strsim::jaro_winkler(&asked.to_lowercase(), name), name))
+        .filter(|(likeness, _)| *likeness > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, name)| format!("; did you mean `{name}`?"))
+        .unwrap_or_default()
+}
+
+impl Settings {
+    /// The technique `id` with `key=value` pairs over its defaults. Choices count before parameters, whatever their
+    /// order.
+    ///
+    /// # Errors
+    /// [`SettingError`] names what is unknown or out of range, with the nearest name that exists.
+    pub fn new<'a>(
+        id: &str,
+        pairs: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Self, SettingError> {
+        let technique = find(id)?;
+        let mut settings = Self { technique, combination: technique.combination, set: Vec::new() };
+        let (choices, params): (Vec<_>, Vec<_>) =
+            pairs.into_iter().partition(|(key, _)| CHOICES.contains(key));
+        for (i, (key, value)) in choices.iter().enumerate() {
+            if choices[..i].iter().any(|(other, _)| other == key) {
+                return Err(SettingError::Twice { key: (*key).to_owned() });
+            }
+            settings.choose(key, value)?;
+        }
+        if let Some(reason) = settings.combination.as_ref().and_then(Combination::objection) {
+            return Err(SettingError::Combination { reason });
+        }
+        for (key, value) in params {
+            settings.put(key, value)?;
+        }
+        Ok(settings)
+    }
+
+    /// The parameters that this combination has.
+    pub fn params(&self) -> impl Iterator<Item = &'static Param> {
+        self.combination.into_iter().flat_map(|combination| combination.params().collect::<Vec<_>>())
+    }
+
+    /// The value of a parameter: as set, or its default. `None` when this combination has no such parameter.
+    pub fn value(&self, name: &str) -> Option<f32> {
+        let combination = self.combination?;
+        let param = combination.params().find(|p| p.name == name)?;
+        let set = self.set.iter().find(|(key, _)| *key == name).map(|(_, value)| *value);
+        Some(set.unwrap_or_else(|| match param.default {
+            ParamDefault::Fixed(value) => value,
+            ParamDefault::Derived { value, .. } => value(&combination),
+        }))
+    }
+
+    /// Width and height of the map, texels; 0 without a map.
+    pub fn map_size_texel(&self) -> u32 {
+        self.value("map_size").map_or(0, |size| size as u32)
+    }
+
+    fn unknown_key(&self, key: &str) -> SettingError {
+        let mut known: Vec<&str> = self.params().map(|p| p.name).collect();
+        if self.combination.is_some() {
+            known.extend(CHOICES);
+        }
+        SettingError::UnknownKey {
+            technique: self.technique.id,
+            key: key.to_owned(),
+            suggestion: suggest(key, known.iter().copied()),
+            known: if known.is_empty() { "none".to_owned() } else { known.join(", ") },
+        }
+    }
+
+    fn choose(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
+        let Some(mut combination) = self.combination else { return Err(self.unknown_key(key)) };
+        let known: Vec<&str> = match key {
+            "storage" => Storage::ALL.iter().map(|c| c.row().id).collect(),
+            "projection" => Projection::ALL.iter().map(|c| c.row().id).collect(),
+            "bias" => Bias::ALL.iter().map(|c| c.row().id).collect(),
+            _ => Filter::ALL.iter().map(|c| c.row().id).collect(),
+        };
+        let found = match key {
+            "storage" => Storage::find(value).map(|c| combination.storage = c),
+            "projection" => Projection::find(value).map(|c| combination.projection = c),
+            "bias" => Bias::find(value).map(|c| combination.bias = c),
+            _ => Filter::find(value).map(|c| combination.filter = c),
+        };
+        found.ok_or_else(|| SettingError::UnknownChoice {
+            key: key.to_owned(),
+            value: value.to_owned(),
+            suggestion: suggest(value, known.iter().copied()),
+            known: known.join(", "),
+        })?;
+        self.combination = Some(combination);
+        Ok(())
+    }
+
+    fn put(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
+        let param = self.params().find(|p| p.name == key).ok_or_else(|| self.unknown_key(key))?;
+        if self.set.iter().any(|(other, _)| *other == param.name) {
+            return Err(SettingError::Twice { key: key.to_owned() });
+        }
+        let number = value.trim().parse::<f32>().ok().filter(|v| (param.min..=param.max).contains(v));
+        let whole = param.step == 1.0;
+        let number =
+            number.filter(|v| !whole || v.fract() == 0.0).ok_or_else(|| SettingError::OutOfRange {
+                key: key.to_owned(),
+                value: value.to_owned(),
+                allowed: format!(
+                    "a {}number from {} to {} ({})",
+                    if whole { "whole " } else { "" },
+                    param.min,
+                    param.max,
+                    param.unit
+                ),
+            })?;
+        self.set.push((param.name, number));
+        Ok(())
+    }
+}
+
+/// The keys that name a table of choices.
+const CHOICES: [&str; 4] = ["storage", "projection", "bias", "filter"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(id: &str, pairs: &[(&str, &str)]) -> String {
+        Settings::new(id, pairs.iter().copied()).expect_err("must be refused").to_string()
+    }
+
+    #[test]
+    fn defaults_follow_the_combination() {
+        let slope = |id, pairs: &[(&str, &str)]| {
+            Settings::new(id, pairs.iter().copied()).expect("valid").value("slope_factor")
+        };
+        assert_eq!(slope("hard", &[]), Some(1.0));
+        assert_eq!(slope("linear", &[]), Some(2.0));
+        assert_eq!(slope("linear", &[("filter", "nearest")]), Some(1.0));
+        assert_eq!(slope("linear", &[("slope_factor", "3.5")]), Some(3.5));
+        assert_eq!(slope("matrix-bias", &[]), None);
+        assert_eq!(slope("unshadowed", &[]), None);
+    }
+
+    #[test]
+    fn choices_count_before_parameters() {
+        let settings = Settings::new("linear", [("matrix_bias", "0.01"), ("bias", "matrix")]).expect("valid");
+        assert_eq!(settings.value("matrix_bias"), Some(0.01));
+    }
+
+    #[test]
+    fn what_is_refused_says_why_and_what_is_near() {
+        assert!(refused("liner", &[]).contains("did you mean `linear`?"));
+        assert!(refused("zzz", &[]).contains("umbrage techniques"));
+        assert!(refused("linear", &[("map_sise", "1")]).contains("did you mean `map_size`?"));
+        assert!(refused("linear", &[("filter", "liner")]).contains("did you mean `linear`?"));
+        assert!(refused("unshadowed", &[("filter", "linear")]).contains("it has none"));
+        for bad in ["0", "-1", "20000", "2.5", "NaN", "inf", "big", ""] {
+            let message = refused("linear", &[("map_size", bad)]);
+            assert!(message.contains("whole number from 1 to 16384 (texel)"), "{bad}: {message}");
+        }
+        assert!(refused("linear", &[("constant", "1"), ("constant", "2")]).contains("twice"));
+        assert!(refused("linear", &[("bias", "none"), ("bias", "slope")]).contains("twice"));
+    }
+}
