@@ -1,0 +1,143 @@
+//! Meshes on the GPU: positions apart from everything else, so that casters read nothing but positions.
+
+use crate::layout::GpuFullVertex;
+use glam::{Vec2, Vec3};
+use umbrage_scene::{AlphaMode, Material, Mesh, Scene};
+use wgpu::util::DeviceExt;
+
+/// Where a mesh lies in the buffers.
+#[derive(Clone, Debug)]
+pub struct MeshRange {
+    /// Indices: first and past the last.
+    pub indices: std::ops::Range<u32>,
+    /// Distinct vertices.
+    pub vertices: u32,
+    /// Byte offset into positions.
+    pub position_offset: u64,
+    /// Byte offset into normals (plain) or full vertices.
+    pub attribute_offset: u64,
+    /// Texture coordinates and alpha of a cut-out caster, byte offset.
+    pub uv_alpha_offset: Option<u64>,
+    /// Does it read full vertices?
+    pub full: bool,
+}
+
+/// All meshes of a scene.
+#[derive(Debug)]
+pub struct Geometry {
+    /// `Float32x3`.
+    pub positions: wgpu::Buffer,
+    /// `Float32x3`, of plain meshes.
+    pub normals: wgpu::Buffer,
+    /// [`GpuFullVertex`], of the others.
+    pub full: wgpu::Buffer,
+    /// `Float32x3`, of cut-out casters.
+    pub uv_alpha: wgpu::Buffer,
+    /// `Uint32`.
+    pub indices: wgpu::Buffer,
+    /// One for each mesh of the scene.
+    pub meshes: Vec<MeshRange>,
+}
+
+/// Does a mesh need more than position and normal?
+fn needs_full(mesh: &Mesh, material: &Material) -> bool {
+    let textured = material.base_color_texture.is_some()
+        || material.metallic_roughness_texture.is_some()
+        || material.normal_texture.is_some()
+        || material.emissive_texture.is_some();
+    textured || !mesh.colors.is_empty() || material.alpha != AlphaMode::Opaque
+}
+
+/// Alpha below which a caster lets light through: the mask's cutoff, or one half where alpha blends. `None`: solid.
+pub fn caster_cutoff(material: &Material) -> Option<f32> {
+    match material.alpha {
+        AlphaMode::Opaque => None,
+        AlphaMode::Mask { cutoff } => (cutoff > 0.0).then_some(cutoff),
+        AlphaMode::Blend => Some(0.5),
+    }
+}
+
+/// Texture coordinates of the base colour, transformed, and alpha as a multiple of the cutoff.
+fn uv_alphas<'a>(mesh: &'a Mesh, material: &'a Material, cutoff: f32) -> impl Iterator<Item = Vec3> + 'a {
+    (0..mesh.positions.len()).map(move |i| {
+        let uv = material.base_color_texture.map_or(Vec2::ZERO, |texture| {
+            let set = if texture.uv_set == 1 { &mesh.uvs1 } else { &mesh.uvs };
+            texture.uv_from_texcoord.transform_point2(set.get(i).copied().unwrap_or_default())
+        });
+        let vertex_alpha = mesh.colors.get(i).map_or(1.0, |c| f32::from(c[3]) / 255.0);
+        uv.extend(material.base_color.w * vertex_alpha / cutoff)
+    })
+}
+
+fn full_vertices(mesh: &Mesh) -> impl Iterator<Item = GpuFullVertex> {
+    (0..mesh.positions.len()).map(|i| {
+        let uv = mesh.uvs.get(i).copied().unwrap_or_default();
+        let uv1 = mesh.uvs1.get(i).copied().unwrap_or_default();
+        GpuFullVertex {
+            normal: mesh.normals.get(i).copied().unwrap_or(Vec3::Y),
+            uv: [uv.x, uv.y, uv1.x, uv1.y],
+            color: mesh.colors.get(i).copied().unwrap_or([255; 4]),
+            tangent: mesh.tangents.get(i).map_or([0.0, 0.0, 0.0, 1.0], |t| t.to_array()),
+        }
+    })
+}
+
+impl Geometry {
+    /// Uploads every mesh of a scene.
+    pub fn new(device: &wgpu::Device, scene: &Scene) -> Self {
+        let (mut positions, mut normals, mut full, mut uv_alpha, mut indices) = (
+            Vec::<Vec3>::new(),
+            Vec::<Vec3>::new(),
+            Vec::<GpuFullVertex>::new(),
+            Vec::<Vec3>::new(),
+            Vec::<u32>::new(),
+        );
+        let meshes = scene.meshes.iter().map(|mesh| {
+            let material = &scene.materials[mesh.material];
+            let is_full = needs_full(mesh, material);
+            let attribute_offset =
+                if is_full { size_of_val(&full[..]) } else { size_of_val(&normals[..]) } as u64;
+            let position_offset = size_of_val(&positions[..]) as u64;
+            let uv_alpha_offset = caster_cutoff(material).map(|cutoff| {
+                let offset = size_of_val(&uv_alpha[..]) as u64;
+                uv_alpha.extend(uv_alphas(mesh, material, cutoff));
+                offset
+            });
+            let first = indices.len() as u32;
+            indices.extend_from_slice(&mesh.indices);
+            positions.extend_from_slice(&mesh.positions);
+            if is_full {
+                full.extend(full_vertices(mesh));
+            } else {
+                normals.extend_from_slice(&mesh.normals);
+            }
+            MeshRange {
+                indices: first..indices.len() as u32,
+                vertices: mesh.positions.len() as u32,
+                position_offset,
+                attribute_offset,
+                uv_alpha_offset,
+                full: is_full,
+            }
+        });
+        let meshes = meshes.collect();
+        let buffer = |label, contents: &[u8], usage| {
+            // An empty buffer cannot be bound.
+            let contents = if contents.is_empty() { &[0u8; 64][..] } else { contents };
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(label),
+                contents,
+                usage,
+            })
+        };
+        let vertex = wgpu::BufferUsages::VERTEX;
+        Self {
+            positions: buffer("positions", bytemuck::cast_slice(&positions), vertex),
+            normals: buffer("normals", bytemuck::cast_slice(&normals), vertex),
+            full: buffer("full vertices", bytemuck::cast_slice(&full), vertex),
+            uv_alpha: buffer("caster uv and alpha", bytemuck::cast_slice(&uv_alpha), vertex),
+            indices: buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
+            meshes,
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Structures as the renderer's shaders see them; see the WGSL for what each field means. A test asks naga about every
+//! uniform of every assembled shader and fails for one that has no mirror here.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3, Vec4};
+
+/// How many lights a frame may have.
+pub const MAX_LIGHTS: usize = 16;
+
+/// Mirrors `Frame` of `wgsl/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GpuFrame {
+    pub clip_from_world: Mat4,
+    pub world_from_clip: Mat4,
+    pub eye: Vec3,
+    pub eye_w: f32,
+    pub ambient: Vec3,
+    pub fill: f32,
+    pub background: Vec3,
+    pub light_count: u32,
+    pub shown_light: u32,
+    pub all_blinn: u32,
+    pub exposure: f32,
+    pub pad: u32,
+}
+
+/// Mirrors `Light` of `wgsl/frame.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GpuLight {
+    pub slide_from_world: Mat4,
+    pub position: Vec3,
+    pub kind: u32,
+    pub direction: Vec3,
+    pub range_m: f32,
+    pub color: Vec3,
+    pub view: i32,
+    pub cone_scale: f32,
+    pub cone_offset: f32,
+    pub cos_outer: f32,
+    pub slide: i32,
+    pub near_m: f32,
+    pub far_m: f32,
+    pub pad: [u32; 2],
+}
+
+/// Mirrors `Material` of `wgsl/mesh.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GpuMaterial {
+    pub base_color: Vec4,
+    pub specular: Vec3,
+    pub gloss: f32,
+    pub emissive: Vec3,
+    pub cutoff: f32,
+    pub blinn_base_color: Vec3,
+    pub blinn_gloss: f32,
+    pub blinn_specular: Vec3,
+    pub normal_scale: f32,
+    pub flags: u32,
+    pub uv_sets: u32,
+    pub pad: [u32; 2],
+    pub uv_rows: [Vec4; 8],
+}
+
+/// Rows of an affine `world_from_object`, as the vertex shaders read an instance.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GpuInstance {
+    pub rows: [Vec4; 3],
+}
+
+impl GpuInstance {
+    /// The rows of `world_from_object`.
+    pub fn new(world_from_object: &Mat4) -> Self {
+        Self { rows: [world_from_object.row(0), world_from_object.row(1), world_from_object.row(2)] }
+    }
+}
+
+/// What a full vertex holds beside its position.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct GpuFullVertex {
+    pub normal: Vec3,
+    pub uv: [f32; 4],
+    pub color: [u8; 4],
+    pub tangent: [f32; 4],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders;
+    use std::collections::BTreeMap;
+    use std::mem::offset_of;
+    use umbrage::core::layout::GpuView;
+
+    macro_rules! offsets {
+        ($ty:ty, $($field:ident),*) => { (vec![$((stringify!($field), offset_of!($ty, $field))),*], size_of::<$ty>()) };
+    }
+
+    #[test]
+    fn every_uniform_of_every_shader_has_a_mirror_with_its_offsets() {
+        let mirrors = BTreeMap::from([
+            (
+                "Frame",
+                offsets!(
+                    GpuFrame,
+                    clip_from_world,
+                    world_from_clip,
+                    eye,
+                    eye_w,
+                    ambient,
+                    fill,
+                    background,
+                    light_count,
+                    shown_light,
+                    all_blinn,
+                    exposure,
+                    pad
+                ),
+            ),
+            (
+                "Light",
+                offsets!(
+                    GpuLight,
+                    slide_from_world,
+                    position,
+                    kind,
+                    direction,
+                    range_m,
+                    color,
+                    view,
+                    cone_scale,
+                    cone_offset,
+                    cos_outer,
+                    slide,
+                    near_m,
+                    far_m,
+                    pad
+                ),
+            ),
+            (
+                "Material",
+                offsets!(
+                    GpuMaterial,
+                    base_color,
+                    specular,
+                    gloss,
+                    emissive,
+                    cutoff,
+                    blinn_base_color,
+                    blinn_gloss,
+                    blinn_specular,
+                    normal_scale,
+                    flags,
+                    uv_sets,
+                    pad,
+                    uv_rows
+                ),
+            ),
+            ("UmbrageView", offsets!(GpuView, texture_from_world, layer, texel_uv, texel_m, perspective)),
+        ]);
+        let mut seen = std::collections::BTreeSet::new();
+        for (name, text) in shaders::all() {
+            let module = naga::front::wgsl::parse_str(&text)
+                .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
+            for (_, global) in module.global_variables.iter() {
+                if global.space != naga::AddressSpace::Uniform {
+                    continue;
+                }
+                let mut ty = &module.types[global.ty];
+                if let naga::TypeInner::Array { base, .. } = ty.inner {
+                    ty = &module.types[base];
+                }
+                if matches!(ty.inner, naga::TypeInner::Matrix { .. }) {
+                    continue;
+                }
+                let naga::TypeInner::Struct { members, span } = &ty.inner else {
+                    panic!("{name}: {global:?}")
+                };
+                let struct_name = ty.name.as_deref().expect("a named struct");
+                let (fields, size) =
+                    mirrors.get(struct_name).unwrap_or_else(|| panic!("{name}: {struct_name} has no mirror"));
+                let shader: Vec<_> =
+                    members.iter().map(|m| (m.name.as_deref().unwrap_or(""), m.offset as usize)).collect();
+                assert_eq!(&shader, fields, "{name}: {struct_name}");
+                assert_eq!(*span as usize, *size, "{name}: {struct_name}");
+                seen.insert(struct_name.to_owned());
+            }
+        }
+        assert_eq!(seen.len(), mirrors.len(), "a mirror that no shader uses: {seen:?}");
+    }
+}

@@ -1,0 +1,140 @@
+//! Lights on the GPU: each with its view, if it gets one, and what to tell the user when it does not.
+
+use crate::layout::{GpuLight, MAX_LIGHTS};
+use bytemuck::Zeroable;
+use glam::{Mat4, Vec3};
+use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit};
+use umbrage::core::layout::GpuView;
+use umbrage::core::lookup::{TextureOrigin, texture_from_world};
+use umbrage::core::plan::lookup_bias_depth;
+use umbrage::core::projection::perspective;
+use umbrage::core::technique::Settings;
+use umbrage::core::{Aabb, DEPTH, Light, LightKind};
+use umbrage_scene::Scene;
+
+/// The lights of a frame.
+#[derive(Debug)]
+pub struct Lights {
+    /// One for each light.
+    pub lights: Vec<GpuLight>,
+    /// One for each map.
+    pub gpu_views: Vec<GpuView>,
+    /// The view of each map, in the order of the layers.
+    pub views: Vec<ShadowView>,
+    /// Index into `views` of each light.
+    pub view_of_light: Vec<Option<usize>>,
+    /// Images of the slides, in the order of their layers.
+    pub slides: Vec<usize>,
+    /// What did not go as the user may expect.
+    pub warnings: Vec<String>,
+}
+
+/// The lookup matrix of a slide: it fills the light's whole cone, or the scene's box for parallel light.
+fn slide_from_world(light: &Light, view: Option<&ShadowView>) -> Mat4 {
+    let clip_from_world = match light.kind {
+        LightKind::Spot { outer_rad, .. } => {
+            let world_from_light = Mat4::from_translation(light.position_world)
+                * Mat4::from_mat3(light.world_from_light_rotation());
+            perspective(outer_rad.tan(), outer_rad.tan(), 0.5, 2.0, DEPTH) * world_from_light.inverse()
+        }
+        _ => view.map_or(Mat4::IDENTITY, ShadowView::clip_from_world),
+    };
+    texture_from_world(clip_from_world, DEPTH, TextureOrigin::TopLeft)
+}
+
+fn gpu_light(
+    light: &Light,
+    exposure: f32,
+    view: Option<(usize, &ShadowView)>,
+    slide: Option<usize>,
+) -> GpuLight {
+    let (kind, inner_rad, outer_rad) = match light.kind {
+        LightKind::Directional => (0, 0.0, std::f32::consts::PI),
+        LightKind::Point => (1, 0.0, std::f32::consts::PI),
+        LightKind::Spot { inner_rad, outer_rad } => (2, inner_rad, outer_rad),
+    };
+    let cone_scale = 1.0 / (inner_rad.cos() - outer_rad.cos()).max(1e-3);
+    GpuLight {
+        slide_from_world: slide_from_world(light, view.map(|v| v.1)),
+        position: light.position_world,
+        kind,
+        direction: light.direction_world.normalize(),
+        range_m: light.range_m.unwrap_or(0.0),
+        color: light.color * light.intensity * exposure,
+        view: view.map_or(-1, |v| v.0 as i32),
+        cone_scale,
+        cone_offset: -outer_rad.cos() * cone_scale,
+        cos_outer: outer_rad.cos(),
+        slide: slide.map_or(-1, |s| s as i32),
+        near_m: view.map_or(0.0, |v| v.1.near_m),
+        far_m: view.map_or(0.0, |v| v.1.far_m),
+        ..GpuLight::zeroed()
+    }
+}
+
+impl Lights {
+    /// Fits a view to each light that the settings shadow.
+    ///
+    /// # Errors
+    /// A light whose numbers cannot be used.
+    pub fn new(
+        scene: &Scene,
+        settings: &Settings,
+        exposure: f32,
+        bounds_world: &[Aabb],
+    ) -> Result<Self, umbrage::core::LightError> {
+        let mut made = Self {
+            lights: Vec::new(),
+            gpu_views: Vec::new(),
+            views: Vec::new(),
+            view_of_light: Vec::new(),
+            slides: Vec::new(),
+            warnings: Vec::new(),
+        };
+        if scene.lights.len() > MAX_LIGHTS {
+            let left_out = scene.lights.len() - MAX_LIGHTS;
+            made.warnings.push(format!("{left_out} lights are left out; a picture has {MAX_LIGHTS} at most"));
+        }
+        let size_texel = settings.map_size_texel();
+        for (index, placed) in scene.lights.iter().take(MAX_LIGHTS).enumerate() {
+            let light = &placed.light;
+            light.check()?;
+            let view = settings.combination.and_then(|combination| {
+                let options = FitOptions { size_texel, least_near: combination.storage.least_near() };
+                match fit(light, bounds_world, &options) {
+                    Ok(view) => Some((made.views.len(), view)),
+                    // It lights nothing, so nothing is missing.
+                    Err(FitError::NothingInReach) => None,
+                    Err(error) => {
+                        made.warnings.push(format!("light {index}: {error}"));
+                        None
+                    }
+                }
+            });
+            let slide = placed.cookie.map(|image| {
+                made.slides.push(image);
+                made.slides.len() - 1
+            });
+            made.lights.push(gpu_light(light, exposure, view.as_ref().map(|(i, v)| (*i, v)), slide));
+            made.view_of_light.push(view.map(|(i, _)| i));
+            if let Some((layer, view)) = view {
+                made.gpu_views.push(GpuView::new(
+                    &view,
+                    layer as u32,
+                    size_texel,
+                    lookup_bias_depth(settings),
+                ));
+                made.views.push(view);
+            }
+        }
+        Ok(made)
+    }
+}
+
+/// Where the eye is: a place and 1, or the direction towards it and 0.
+pub fn eye_of(camera: &umbrage::core::Camera) -> (Vec3, f32) {
+    match camera.projection {
+        umbrage::core::Projection::Perspective { .. } => (camera.position_world, 1.0),
+        umbrage::core::Projection::Orthographic { .. } => (-camera.direction_world, 0.0),
+    }
+}

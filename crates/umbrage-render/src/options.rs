@@ -1,0 +1,102 @@
+//! What a picture should be.
+
+use glam::{UVec2, Vec3};
+use umbrage::core::technique::Settings;
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// The lit, shadowed scene.
+    Final,
+    /// V of one light: white lit, black shadow.
+    Visibility,
+    /// The lit, shadowed scene from the light's eye.
+    Light,
+    /// The light's map: near black, far white.
+    Depth,
+    /// Each surface's distance from the light: near black, far white.
+    Distance,
+    /// The map projected on the scene.
+    Projected,
+}
+
+impl View {
+    /// All views.
+    pub const ALL: [Self; 6] =
+        [Self::Final, Self::Visibility, Self::Light, Self::Depth, Self::Distance, Self::Projected];
+
+    /// Name on the command line.
+    pub fn id(self) -> &'static str {
+        match self {
+            Self::Final => "final",
+            Self::Visibility => "visibility",
+            Self::Light => "light",
+            Self::Depth => "depth",
+            Self::Distance => "distance",
+            Self::Projected => "projected",
+        }
+    }
+
+    /// What it shows, in one clause.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Final => "the lit, shadowed scene",
+            Self::Visibility => "how much of the light each surface sees: white lit, black shadow",
+            Self::Light => "the scene from the light's eye",
+            Self::Depth => "the light's map: near black, far white",
+            Self::Distance => "each surface's distance from the light: near black, far white",
+            Self::Projected => "the light's map projected on the scene",
+        }
+    }
+
+    /// Does it need the map itself, and so a light that has one?
+    pub fn needs_map(self) -> bool {
+        matches!(self, Self::Light | Self::Depth | Self::Distance | Self::Projected)
+    }
+}
+
+/// Everything about a picture but its scene, camera and lights.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// Pixels.
+    pub size: UVec2,
+    /// Technique and parameters, the same for every light.
+    pub settings: Settings,
+    /// What the picture shows.
+    pub view: View,
+    /// Which light the debug views show.
+    pub shown_light: usize,
+    /// Samples a pixel: 1 or what the adapter does (4 everywhere).
+    pub samples: u32,
+    /// Every material as ambient, Lambert and Blinn, as the documents shade.
+    pub all_blinn: bool,
+    /// Light that comes from everywhere, as a share of the brightest light. 0..1, default 0.08.
+    pub ambient: f32,
+    /// Share of the diffuse light that stays in shadow, so that shadows do not look flat. 0..1, default 0.1.
+    pub fill: f32,
+    /// Factor from radiance to picture. `None`: from the lights.
+    pub exposure: Option<f32>,
+    /// Linear RGB where nothing is drawn.
+    pub background: Vec3,
+    /// Count vertices and fragments on the GPU, where it can. Costs a little time.
+    pub statistics: bool,
+}
+
+impl RenderOptions {
+    /// A 1280x720 picture with these settings.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            size: UVec2::new(1280, 720),
+            settings,
+            view: View::Final,
+            shown_light: 0,
+            samples: 1,
+            all_blinn: false,
+            ambient: 0.08,
+            fill: 0.1,
+            exposure: None,
+            background: Vec3::new(0.05, 0.06, 0.08),
+            statistics: false,
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! The renderer's own pipelines.
+
+use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
+use crate::materials::Variant;
+use crate::options::View;
+use crate::shaders;
+use std::collections::HashMap;
+use std::num::NonZeroU64;
+use umbrage::CasterStreams;
+use umbrage::core::layout::GpuView;
+use umbrage::core::technique::Settings;
+
+/// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
+pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// The picture's depth.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The picture.
+pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Views that are numbers, not colour.
+pub const GREY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// V, unrounded.
+pub const VISIBILITY: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// The format that a view is drawn in.
+pub fn format_of(view: View) -> wgpu::TextureFormat {
+    match view {
+        View::Final | View::Light => COLOR,
+        View::Visibility => VISIBILITY,
+        View::Depth | View::Distance | View::Projected => GREY,
+    }
+}
+
+/// Layouts of the bind groups.
+#[derive(Debug)]
+pub struct Layouts {
+    /// Group 0: frame, lights, views, maps, slides.
+    pub frame: wgpu::BindGroupLayout,
+    /// Group 1 of mesh pipelines.
+    pub material: wgpu::BindGroupLayout,
+    /// Group 1 of screen pipelines: G-buffer and depth.
+    pub gbuffer: wgpu::BindGroupLayout,
+}
+
+fn uniform(bytes: usize) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: NonZeroU64::new(bytes as u64),
+    }
+}
+
+fn texture(
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindingType {
+    wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
+}
+
+impl Layouts {
+    /// Makes the layouts.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let group = |label, visibility, types: &[wgpu::BindingType]| {
+            let entries: Vec<_> = (0u32..)
+                .zip(types)
+                .map(|(binding, ty)| wgpu::BindGroupLayoutEntry { binding, visibility, ty: *ty, count: None })
+                .collect();
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some(label),
+                entries: &entries,
+            })
+        };
+        use wgpu::{SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension};
+        Self {
+            frame: group(
+                "frame",
+                ShaderStages::VERTEX_FRAGMENT,
+                &[
+                    uniform(size_of::<GpuFrame>()),
+                    uniform(size_of::<GpuLight>() * MAX_LIGHTS),
+                    uniform(size_of::<GpuView>() * MAX_LIGHTS),
+                    texture(TextureSampleType::Depth, TextureViewDimension::D2Array),
+                    wgpu::BindingType::Sampler(SamplerBindingType::Comparison),
+                    texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
+                    wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
+                ],
+            ),
+            material: crate::materials::layout(device),
+            gbuffer: group(
+                "gbuffer",
+                ShaderStages::FRAGMENT,
+                &[
+                    texture(TextureSampleType::Uint, TextureViewDimension::D2),
+                    texture(TextureSampleType::Depth, TextureViewDimension::D2),
+                ],
+            ),
+        }
+    }
+}
+
+/// Where mesh pipelines draw to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MeshTarget {
+    /// Surfaces into the G-buffer, lit afterwards.
+    Gbuffer,
+    /// Lit at once.
+    Forward {
+        /// Samples a pixel.
+        samples: u32,
+    },
+}
+
+/// Mesh pipelines by variant, made when first asked for.
+#[derive(Debug)]
+pub struct MeshPipelines {
+    shader: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    made: HashMap<(MeshTarget, Variant), wgpu::RenderPipeline>,
+}
+
+const NORMALS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 12,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![4 => Float32x3],
+};
+const FULL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<GpuFullVertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![4 => Float32x3, 5 => Float32x4, 6 => Unorm8x4, 7 => Float32x4],
+};
+
+impl MeshPipelines {
+    /// Compiles the shader of these settings.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, settings: &Settings) -> Self {
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("mesh"),
+            source: wgpu::ShaderSource::Wgsl(shaders::mesh(settings).into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("mesh"),
+            bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.material)],
+            immediate_size: 0,
+        });
+        Self { shader, layout, made: HashMap::new() }
+    }
+
+    /// Makes the pipelines of these variants, so that a frame finds them.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        target: MeshTarget,
+        variants: impl Iterator<Item = Variant>,
+    ) {
+        for variant in variants {
+            if !self.made.contains_key(&(target, variant)) {
+                let pipeline = self.make(device, target, variant);
+                self.made.insert((target, variant), pipeline);
+            }
+        }
+    }
+
+    /// The pipeline of a prepared variant.
+    pub fn get(&self, target: MeshTarget, variant: Variant) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&(target, variant))
+    }
+
+    fn make(&self, device: &wgpu::Device, target: MeshTarget, variant: Variant) -> wgpu::RenderPipeline {
+        let constants: Vec<(&str, f64)> = [
+            ("HAS_BASE_TEXTURE", variant.textures[0]),
+            ("HAS_METALLIC_ROUGHNESS_TEXTURE", variant.textures[1]),
+            ("HAS_NORMAL_TEXTURE", variant.textures[2]),
+            ("HAS_EMISSIVE_TEXTURE", variant.textures[3]),
+            ("IS_CUT_OUT", variant.cut_out),
+            ("IS_DOUBLE_SIDED", variant.double_sided),
+        ]
+        .map(|(name, on)| (name, f64::from(u8::from(on))))
+        .to_vec();
+        let compilation_options =
+            wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let (entry_point, format, samples) = match (target, variant.full) {
+            (MeshTarget::Gbuffer, false) => ("fs_gbuffer_plain", GBUFFER, 1),
+            (MeshTarget::Gbuffer, true) => ("fs_gbuffer_full", GBUFFER, 1),
+            (MeshTarget::Forward { samples }, false) => ("fs_forward_plain", COLOR, samples),
+            (MeshTarget::Forward { samples }, true) => ("fs_forward_full", COLOR, samples),
+        };
+        let buffers = [
+            Some(CasterStreams::POSITIONS),
+            Some(CasterStreams::INSTANCES),
+            Some(if variant.full { FULL } else { NORMALS }),
+        ];
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(entry_point),
+            layout: Some(&self.layout),
+            vertex: wgpu::VertexState {
+                module: &self.shader,
+                entry_point: Some(if variant.full { "vs_full" } else { "vs_plain" }),
+                compilation_options: compilation_options.clone(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                front_face: if variant.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
+                cull_mode: (!variant.double_sided).then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(!variant.blend),
+                depth_compare: Some(umbrage::caster::depth_compare()),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.shader,
+                entry_point: Some(entry_point),
+                compilation_options,
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: variant.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+/// The pipeline that makes a view from the G-buffer.
+pub fn screen_pipeline(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    settings: &Settings,
+    view: View,
+) -> wgpu::RenderPipeline {
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("screen"),
+        source: wgpu::ShaderSource::Wgsl(shaders::screen(settings).into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("screen"),
+        bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.gbuffer)],
+        immediate_size: 0,
+    });
+    let entry_point = match view {
+        View::Final | View::Light => "fs_final",
+        View::Visibility => "fs_visibility",
+        View::Depth => "fs_depth",
+        View::Distance => "fs_distance",
+        View::Projected => "fs_projected",
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &shader,
+            entry_point: Some("vs_screen"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &shader,
+            entry_point: Some(entry_point),
+            compilation_options: Default::default(),
+            targets: &[Some(format_of(view).into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

@@ -1,0 +1,57 @@
+// What every pass of the reference renderer knows: the frame, its lights, their maps and slides.
+
+struct Frame {
+    clip_from_world: mat4x4f,
+    world_from_clip: mat4x4f,
+    // Where the eye is, or (0, 0, 0) and the direction to it for a parallel camera, see `eye_w`.
+    eye: vec3f,
+    // 1: `eye` is a place, 0: it is the direction towards the eye.
+    eye_w: f32,
+    // Light that comes from everywhere, exposed.
+    ambient: vec3f,
+    // Share of the diffuse light that stays in shadow, 0..1.
+    fill: f32,
+    // Linear RGB where nothing is drawn.
+    background: vec3f,
+    light_count: u32,
+    // The light that the debug views show.
+    shown_light: u32,
+    // 1: every material answers as ambient, Lambert and Blinn.
+    all_blinn: u32,
+    exposure: f32,
+    pad: u32,
+}
+
+const DIRECTIONAL = 0u;
+const POINT = 1u;
+const SPOT = 2u;
+
+struct Light {
+    // Lookup matrix of the slide: the whole cone, whatever the map's projection is.
+    slide_from_world: mat4x4f,
+    position: vec3f,
+    kind: u32,
+    direction: vec3f,
+    // Metres, 0: endless.
+    range_m: f32,
+    // Linear RGB times intensity times exposure.
+    color: vec3f,
+    // Index into `views`, or -1: no map.
+    view: i32,
+    cone_scale: f32,
+    cone_offset: f32,
+    cos_outer: f32,
+    // Layer of the slides, or -1: none.
+    slide: i32,
+    near_m: f32,
+    far_m: f32,
+    pad: vec2u,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
+@group(0) @binding(2) var<uniform> views: array<UmbrageView, MAX_LIGHTS>;
+@group(0) @binding(3) var maps: texture_depth_2d_array;
+@group(0) @binding(4) var map_compare: sampler_comparison;
+@group(0) @binding(5) var slides: texture_2d_array<f32>;
+@group(0) @binding(6) var slide_sampler: sampler;

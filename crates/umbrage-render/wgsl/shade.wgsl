@@ -1,0 +1,104 @@
+// From a surface to a colour.
+
+// Where the eye is seen from `p_world`; unit length.
+fn towards_eye(p_world: vec3f) -> vec3f {
+    return normalize(frame.eye - p_world * frame.eye_w);
+}
+
+// Visibility V of a light from a point: 0 behind it and outside its cone, else what the technique says.
+fn visibility(light: Light, p_world: vec3f, towards_light: vec3f) -> f32 {
+    if light.kind == SPOT && dot(-towards_light, light.direction) < light.cos_outer {
+        return 0.0;
+    }
+    if light.view < 0 {
+        return 1.0;
+    }
+    return map_visibility(views[light.view], light.kind, p_world);
+}
+
+struct Incoming {
+    // Unit vector from the surface to the light.
+    towards: vec3f,
+    // What arrives where nothing is in the way and the surface faces the light; exposed lux, RGB.
+    illuminance: vec3f,
+}
+
+fn incoming(light: Light, p_world: vec3f) -> Incoming {
+    if light.kind == DIRECTIONAL {
+        return Incoming(-light.direction, light.color);
+    }
+    let offset = light.position - p_world;
+    let distance_m = length(offset);
+    let towards = offset / max(distance_m, 1e-30);
+    var lux = light.color * umbrage_falloff(distance_m, light.range_m);
+    if light.kind == SPOT {
+        lux *= umbrage_cone(dot(-towards, light.direction), light.cone_scale, light.cone_offset);
+    }
+    if light.slide >= 0 {
+        lux *= umbrage_cookie(slides, slide_sampler, u32(light.slide), light.slide_from_world, p_world);
+    }
+    return Incoming(towards, lux);
+}
+
+const PI = 3.14159265359;
+
+// Diffuse and specular reflectance for one direction of light, each times the cosine and without visibility.
+struct Answer {
+    diffuse: vec3f,
+    specular: vec3f,
+}
+
+// glTF 2.0, appendix B: Lambert and GGX with Smith's height-correlated masking and Schlick's Fresnel.
+fn answer_metallic_roughness(s: Surface, n_dot_l: f32, l: vec3f, v: vec3f) -> Answer {
+    let metallic = s.specular.x;
+    let f0 = mix(vec3f(0.04), s.base_color, metallic);
+    let alpha = max(s.gloss * s.gloss, 1e-3);
+    let a2 = alpha * alpha;
+    let h = normalize(l + v);
+    let n_dot_v = max(dot(s.shading_normal, v), 1e-4);
+    let n_dot_h = saturate(dot(s.shading_normal, h));
+    let v_dot_h = saturate(dot(v, h));
+    let d = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
+    let ggx = a2 / (PI * d * d);
+    let smith = 0.5 / (n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - a2) + a2) + n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2));
+    let m = 1.0 - v_dot_h;
+    let m2 = m * m;
+    let fresnel = f0 + (1.0 - f0) * (m2 * m2 * m);
+    let diffuse = (1.0 - fresnel) * (1.0 - metallic) * s.base_color / PI;
+    return Answer(diffuse * n_dot_l, fresnel * (ggx * smith * n_dot_l));
+}
+
+// Lambert and Blinn (Blinn 1977); the same 1 / pi as above, so that both answer alike to the same light.
+fn answer_blinn(s: Surface, n_dot_l: f32, l: vec3f, v: vec3f) -> Answer {
+    let n_dot_h = saturate(dot(s.shading_normal, normalize(l + v)));
+    let highlight = pow(n_dot_h, exp2(s.gloss * 16.0));
+    return Answer(s.base_color * (n_dot_l / PI), s.specular * (highlight * n_dot_l / PI));
+}
+
+// Colour of a surface under all lights, exposed, not clamped.
+fn shade(s: Surface, p_world: vec3f) -> vec3f {
+    if (s.flags & UNLIT) != 0u {
+        return s.base_color;
+    }
+    let blinn = (s.flags & BLINN) != 0u;
+    let v = towards_eye(p_world);
+    // Ambient light: metals give it back in their own colour, everything else in its base colour.
+    var color = frame.ambient * s.base_color;
+    for (var i = 0u; i < frame.light_count; i++) {
+        let light = lights[i];
+        let arriving = incoming(light, p_world);
+        let n_dot_l = dot(s.shading_normal, arriving.towards);
+        if n_dot_l <= 0.0 || all(arriving.illuminance <= vec3f(0.0)) {
+            continue;
+        }
+        var answer: Answer;
+        if blinn {
+            answer = answer_blinn(s, n_dot_l, arriving.towards, v);
+        } else {
+            answer = answer_metallic_roughness(s, n_dot_l, arriving.towards, v);
+        }
+        let seen = visibility(light, p_world, arriving.towards);
+        color += arriving.illuminance * (answer.diffuse * mix(frame.fill, 1.0, seen) + answer.specular * seen);
+    }
+    return color;
+}
