@@ -5,6 +5,7 @@
 mod builtin;
 mod error;
 mod gltf;
+mod normals;
 mod obj;
 pub mod scene;
 
