@@ -58,3 +58,6 @@ pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
     }
     Ok(scene)
 }
+
+#[cfg(test)]
+mod tests;

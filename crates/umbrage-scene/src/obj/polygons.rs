@@ -60,7 +60,13 @@ impl Cutter {
             let turned = (at(t[1]) - at(t[0])).perp_dot(at(t[2]) - at(t[0])) < 0.0;
             if turned { [t[0], t[2], t[1]] } else { [t[0], t[1], t[2]] }
         }));
-        !self.ears.is_empty()
+        if self.ears.is_empty() {
+            return false;
+        }
+        if self.ears.len() / 3 < corners.len() - 2 {
+            bridge(&self.ears, corners.len() as u32, triangles);
+        }
+        true
     }
 }
 
@@ -68,6 +74,28 @@ impl Cutter {
 pub(crate) fn newell(corners: &[Vec3]) -> DVec3 {
     let Some(origin) = corners.first().map(|p| p.as_dvec3()) else { return DVec3::ZERO };
     corners.windows(2).map(|w| (w[0].as_dvec3() - origin).cross(w[1].as_dvec3() - origin)).sum()
+}
+
+/// Ear cutting leaves out corners that lie on their neighbours' line or repeat one. The faces next door still have them
+/// (and their own normals may stand there), so thin triangles close the seam from kept corner to kept corner.
+fn bridge(ears: &[u32], corners: u32, triangles: &mut Vec<[u32; 3]>) {
+    let mut kept = vec![false; corners as usize];
+    for i in ears {
+        kept[*i as usize] = true;
+    }
+    let Some(start) = kept.iter().position(|k| *k) else { return };
+    let start = start as u32;
+    let mut anchor = start;
+    for step in 1..=corners {
+        let here = (start + step) % corners;
+        let before = (start + step - 1) % corners;
+        if before != anchor {
+            triangles.push([anchor, before, here]);
+        }
+        if kept[here as usize] {
+            anchor = here;
+        }
+    }
 }
 
 /// Along the diagonal whose triangles look the same way: the other one leaves a concave quad.
@@ -146,6 +174,37 @@ mod tests {
         let covered: f64 =
             triangles.iter().map(|t| newell(&t.map(|i: u32| corners[i as usize])).length()).sum();
         assert!(covered > 1.01 * newell(&corners).length());
+    }
+
+    /// Corners that repeat or lie on a line: each edge of the outline must still be an edge of one triangle.
+    #[test]
+    fn no_edge_of_the_outline_is_lost() {
+        let xy = [
+            (0.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 0.0),
+            (2.0, 0.0),
+            (2.0, 2.0),
+            (1.0, 2.0),
+            (1.0, 3.0),
+            (1.0, 2.0),
+            (0.0, 2.0),
+        ];
+        let corners = xy.map(|(x, y)| Vec3::new(x, y, 0.0));
+        for turn in 0..corners.len() {
+            let mut turned = corners;
+            turned.rotate_left(turn);
+            let mut triangles = Vec::new();
+            Cutter::new().cut(&turned, &mut triangles);
+            assert_eq!(triangles.len(), corners.len() - 2, "{turn}: {triangles:?}");
+            let n = corners.len() as u32;
+            for a in 0..n {
+                let b = (a + 1) % n;
+                let users =
+                    triangles.iter().filter(|t| (0..3).any(|i| (t[i], t[(i + 1) % 3]) == (a, b))).count();
+                assert_eq!(users, 1, "{turn}: edge {a} {b} in {triangles:?}");
+            }
+        }
     }
 
     #[test]
