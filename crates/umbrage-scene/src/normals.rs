@@ -10,6 +10,9 @@ const CREASE_RAD: f64 = std::f64::consts::PI / 3.0;
 /// With more faces than this at one point they are compared with a few of them, not each with each.
 const CROWD: usize = 64;
 
+/// Bits of the position, and the smoothing group.
+type Place = ([u32; 3], u32);
+
 /// A normal for each corner, from the faces that share its place and smoothing group, weighted by their angle there.
 ///
 /// `corners` holds the positions of all faces one after the other, `arities` how many each has, `groups` which faces
@@ -17,7 +20,7 @@ const CROWD: usize = 64;
 pub(crate) fn smooth(corners: &[Vec3], arities: &[u32], groups: &[Option<u32>]) -> Vec<Vec3> {
     let mut faces = Vec::with_capacity(arities.len());
     // Corners by place and group; each is (face, corner, angle).
-    let mut places: HashMap<([u32; 3], u32), Vec<(usize, usize, f64)>> = HashMap::new();
+    let mut places: HashMap<Place, Vec<(usize, usize, f64)>> = HashMap::new();
     let mut normals = vec![Vec3::ZERO; corners.len()];
     let mut start = 0;
     for (face, (&arity, group)) in arities.iter().zip(groups).enumerate() {

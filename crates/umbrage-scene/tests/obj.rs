@@ -1,5 +1,8 @@
 //! OBJ files from elsewhere: what they hold is known from other readers, broken ones are refused in one line.
 
+// The lint's exception for tests does not see a test file's helpers.
+#![allow(clippy::unwrap_used)]
+
 use glam::{Vec3, Vec4};
 use std::path::{Path, PathBuf};
 use umbrage_scene::{AlphaMode, Reflectance, Scene, load};
