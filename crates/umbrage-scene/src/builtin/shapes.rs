@@ -279,7 +279,8 @@ mod tests {
             ("cylinder", cylinder(0.5, 0.5, 2.0, 96), pi / 2.0),
             ("frustum", cylinder(1.0, 0.5, 1.0, 96), pi * 1.75 / 3.0),
             ("torus", torus(1.0, 0.25, 96, 48), 2.0 * pi * pi / 16.0),
-            ("knot", torus_knot(0.42, 0.13, 128, 20), 0.27),
+            // Its curve is 6.699 m long.
+            ("knot", torus_knot(0.42, 0.13, 128, 20), pi * 0.13 * 0.13 * 6.699),
             ("arch", arch(0.9, 1.2, 0.4, 64), 0.4 * 0.5 * pi * (1.44 - 0.81)),
         ]
     }

@@ -13,14 +13,14 @@ const HALF_M: f32 = 0.4;
 
 pub(super) fn make(_: &mut Random) -> Scene {
     let mut stage = Stage::default();
-    let eye = Vec3::new(0.0, 0.3, 7.6);
+    let eye = Vec3::new(0.0, 0.3, 8.3);
     // Light and eye stand 45 degrees apart, so that planes turned by 0 and by 89 degrees are both seen well.
-    let lamp = Vec3::new(-7.0, 1.2, 7.0);
+    let lamp = Vec3::new(-7.6, 1.2, 8.0);
     for (i, degrees) in ANGLES_DEG.into_iter().enumerate() {
         // Five, four and four, so far apart that neither light nor eye sees one behind another.
         let (column, row) = if i < 5 { (i, 0) } else { ((i - 5) % 4, 1 + (i - 5) / 4) };
         let columns = if row == 0 { 5.0 } else { 4.0 };
-        let center = Vec3::new(1.8 * (column as f32 - 0.5 * (columns - 1.0)), 1.35 * (1.0 - row as f32), 0.0);
+        let center = Vec3::new(2.0 * (column as f32 - 0.5 * (columns - 1.0)), 1.35 * (1.0 - row as f32), 0.0);
         let to_light = (lamp - center).normalize();
         let to_eye = (eye - center).normalize();
         // From the light's direction towards the eye's.
