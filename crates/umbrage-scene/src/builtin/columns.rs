@@ -66,5 +66,5 @@ pub(super) fn make(random: &mut Random) -> Scene {
     let camera = Camera::look_at(Vec3::new(6.4, 4.3, 9.6), Vec3::new(0.1, 1.35, -0.3), 0.75, 0.1, 80.0);
     let target = Vec3::new(0.0, 1.0, 0.0);
     let light = Light::spot(Vec3::new(-9.0, 10.0, 9.5), target, 0.42, 0.55);
-    stage.finish(camera, light, target, 3.6)
+    stage.finish(camera, light, target, 3.0)
 }

@@ -52,8 +52,8 @@ pub(super) fn make(random: &mut Random) -> Scene {
     let reach = 0.012 / lean.cos() + (1.0 - 0.012 * lean.sin()) * lean.tan();
     stage.add("board", board.moved(Mat4::from_translation(Vec3::X * (post_x - reach))), wood);
 
-    let camera = Camera::look_at(Vec3::new(2.6, 2.7, 4.4), Vec3::new(0.05, 0.28, -0.15), 0.62, 0.05, 30.0);
+    let camera = Camera::look_at(Vec3::new(2.6, 2.7, 4.4), Vec3::new(0.08, 0.26, -0.1), 0.5, 0.05, 30.0);
     let target = Vec3::new(0.0, 0.3, 0.0);
     let light = Light::spot(Vec3::new(-3.0, 4.6, 3.2), target, 0.32, 0.42);
-    stage.finish(camera, light, target, 3.6)
+    stage.finish(camera, light, target, 3.0)
 }

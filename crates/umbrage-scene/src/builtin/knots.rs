@@ -30,5 +30,5 @@ pub(super) fn make(random: &mut Random) -> Scene {
         far_m: Some(30.0),
         ..Light::spot(Vec3::new(4.0, 12.0, 4.0), Vec3::ZERO, 30f32.to_radians(), 40f32.to_radians())
     };
-    stage.finish(camera, light, Vec3::ZERO, 3.6)
+    stage.finish(camera, light, Vec3::ZERO, 3.0)
 }

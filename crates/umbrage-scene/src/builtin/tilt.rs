@@ -37,5 +37,5 @@ pub(super) fn make(_: &mut Random) -> Scene {
     }
     let camera = Camera::look_at(eye, Vec3::ZERO, 0.66, 0.1, 40.0);
     let light = Light::spot(lamp, Vec3::ZERO, 0.48, 0.58);
-    stage.finish(camera, light, Vec3::ZERO, 3.6)
+    stage.finish(camera, light, Vec3::ZERO, 3.0)
 }

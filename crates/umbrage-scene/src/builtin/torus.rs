@@ -33,13 +33,13 @@ pub(super) fn make(random: &mut Random) -> Scene {
         (0.36, 0.8),
         (0.0, 0.8),
     ];
-    let place = Vec3::new(1.3, 0.0, 0.35);
+    let place = Vec3::new(1.5, 0.0, 0.7);
     stage.add("pedestal", shapes::lathe(&profile, 96).moved(Mat4::from_translation(place)), plaster);
     let ball = place + Vec3::Y * (0.8 + 0.34);
     stage.add("ball", shapes::sphere(0.34, 96, 48).moved(Mat4::from_translation(ball)), amber);
 
-    let camera = Camera::look_at(Vec3::new(2.2, 2.35, 6.2), Vec3::new(0.2, 1.12, -0.2), 0.62, 0.1, 40.0);
+    let camera = Camera::look_at(Vec3::new(2.2, 2.35, 6.2), Vec3::new(0.3, 1.08, -0.2), 0.6, 0.1, 40.0);
     let target = Vec3::new(0.2, 0.9, -0.4);
-    let light = Light::spot(Vec3::new(-3.4, 5.0, 4.2), target, 0.32, 0.5);
-    stage.finish(camera, light, target, 3.6)
+    let light = Light::spot(Vec3::new(-3.4, 5.2, 4.4), target, 0.34, 0.6);
+    stage.finish(camera, light, target, 3.1)
 }

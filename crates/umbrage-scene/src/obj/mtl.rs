@@ -8,7 +8,7 @@ use super::{
 use crate::{AlphaMode, Material, Reflectance, Scene};
 use glam::{Vec3, Vec4};
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     fmt::Write,
     path::{Path, PathBuf},
 };
@@ -16,10 +16,14 @@ use std::{
 /// An MTL file is text that people can read; a larger one is something else.
 const MAX_MTL_BYTES: u64 = 64 << 20;
 
+/// More file names than this on one `mtllib` line are no honest file's.
+const MAX_NAMES: usize = 64;
+
 /// All materials of all `mtllib` files, and where their pictures lie.
 pub(super) struct Library {
     by_name: HashMap<String, (tobj::Material, PathBuf)>,
     obj_folder: PathBuf,
+    read: HashSet<PathBuf>,
 }
 
 /// sRGB to linear, channel by channel. MTL says nothing about colour spaces; programs write what their colour picker
@@ -34,12 +38,16 @@ impl Library {
     /// Reads what stands after each `mtllib`: one file whose name may have spaces, or several files.
     pub(super) fn read(obj: &Path, libraries: &[String], warnings: &mut Vec<String>) -> Self {
         let obj_folder = obj.parent().unwrap_or(Path::new("")).to_owned();
-        let mut library = Self { by_name: HashMap::new(), obj_folder };
+        let mut library = Self { by_name: HashMap::new(), obj_folder, read: HashSet::new() };
         for names in libraries {
             if library.read_file(names, warnings) {
                 continue;
             }
-            let found = names.split_whitespace().filter(|name| library.read_file(name, warnings)).count();
+            let found = names
+                .split_whitespace()
+                .take(MAX_NAMES)
+                .filter(|name| library.read_file(name, warnings))
+                .count();
             if found == 0 {
                 warnings
                     .push(format!("mtllib {} is not there; its materials are matte white", quoted(names)));
@@ -50,6 +58,9 @@ impl Library {
 
     fn read_file(&mut self, name: &str, warnings: &mut Vec<String>) -> bool {
         let Some(path) = find(&[&self.obj_folder], name) else { return false };
+        if !self.read.insert(path.clone()) {
+            return true;
+        }
         let Some(bytes) = read_bounded(&path, MAX_MTL_BYTES) else { return false };
         let text = tidy(&bytes, &quoted(name), warnings);
         match tobj::load_mtl_buf(&mut text.as_bytes()) {
@@ -92,10 +103,11 @@ impl Library {
             })
             .collect();
         if let Some(first) = unknown.first() {
-            let count = unknown.len();
-            scene
-                .warnings
-                .push(format!("usemtl {first}: no mtllib has it; {count} materials are matte white"));
+            let more = match unknown.len() - 1 {
+                0 => String::new(),
+                more => format!(" (and {more} more)"),
+            };
+            scene.warnings.push(format!("usemtl {first}{more}: not in any mtllib; matte white instead"));
         }
         scene.images = textures.into_images();
         indices

@@ -11,6 +11,9 @@ use std::{collections::HashMap, fmt::Write};
 /// Coordinates beyond this would overflow when squared, and no scene is that large.
 const MAX_COORDINATE: f32 = 1e15;
 
+/// More `mtllib` lines than this are no honest file's.
+const MAX_LIBRARIES: usize = 256;
+
 /// What `s` says about a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Smoothing {
@@ -129,10 +132,11 @@ impl Scan {
             return Err(format!("line {number}: the position is beyond {MAX_COORDINATE:e}; {wanted}"));
         }
         let [x, y, z] = position;
-        let _ = write!(self.text, "v {x} {y} {z}");
+        // With an exponent tiny numbers stay short.
+        let _ = write!(self.text, "v {x:e} {y:e} {z:e}");
         if self.colors {
             let rgb = if count == 6 { [numbers[3], numbers[4], numbers[5]] } else { [1.0; 3] };
-            let _ = write!(self.text, " {} {} {}", rgb[0], rgb[1], rgb[2]);
+            let _ = write!(self.text, " {:e} {:e} {:e}", rgb[0], rgb[1], rgb[2]);
         }
         self.text.push('\n');
         Ok(())
@@ -142,7 +146,7 @@ impl Scan {
         // A one-dimensional coordinate has no second number; a broken one costs the picture its place, not the shape.
         let mut numbers = words(rest).map(|word| finite(word).unwrap_or(0.0).clamp(-1e6, 1e6));
         let (u, v) = (numbers.next().unwrap_or(0.0), numbers.next().unwrap_or(0.0));
-        let _ = writeln!(self.text, "vt {u} {v}");
+        let _ = writeln!(self.text, "vt {u:e} {v:e}");
     }
 
     /// Is it one? A normal that is none is computed instead.
@@ -151,7 +155,7 @@ impl Scan {
         let length = numbers.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
         let good = numbers.len() == 3 && length > 1e-30;
         let unit = |i: usize| if good { f64::from(numbers[i]) / length } else { 0.0 };
-        let _ = writeln!(self.text, "vn {} {} {}", unit(0) as f32, unit(1) as f32, unit(2) as f32);
+        let _ = writeln!(self.text, "vn {:e} {:e} {:e}", unit(0) as f32, unit(1) as f32, unit(2) as f32);
         good
     }
 }
@@ -188,9 +192,7 @@ impl Faces<'_> {
                         })
                     });
                 }
-                "mtllib" if !rest.is_empty() && !self.scan.libraries.iter().any(|l| l == rest) => {
-                    self.scan.libraries.push(rest.to_owned());
-                }
+                "mtllib" => self.library(rest),
                 "p" | "l" => self.scan.points_and_lines += 1,
                 // `fo` is what the first version of the format called a face.
                 "f" | "fo" => {
@@ -214,6 +216,13 @@ impl Faces<'_> {
         let what = "faces name texture coordinates or normals that do not exist and do without them";
         missing.warn(&mut self.scan.warnings, what);
         Ok(())
+    }
+
+    fn library(&mut self, rest: &str) {
+        let libraries = &mut self.scan.libraries;
+        if !rest.is_empty() && libraries.len() < MAX_LIBRARIES && !libraries.iter().any(|l| l == rest) {
+            libraries.push(rest.to_owned());
+        }
     }
 
     /// Reads one face's corners as absolute indices from 1.
@@ -335,7 +344,9 @@ mod tests {
         let scan = scan(text.as_bytes()).unwrap();
         assert_eq!(scan.materials, ["a"]);
         assert!(
-            scan.text.ends_with("vt 0 0\nvn 0 0 1\ng 0\nf 1 2 3\ng 1\nf 1/1/1 2/1/1 3/1/1\ng 2\nf 1 2 3\n"),
+            scan.text.ends_with(
+                "vt 0e0 0e0\nvn 0e0 0e0 1e0\ng 0\nf 1 2 3\ng 1\nf 1/1/1 2/1/1 3/1/1\ng 2\nf 1 2 3\n"
+            ),
             "{}",
             scan.text
         );

@@ -96,6 +96,21 @@ fn mtl_becomes_blinn() {
     assert!(matches!(material.reflectance, Reflectance::Blinn { shininess: 40.0, .. }));
 }
 
+/// Nothing that a file can have many of may cost the square of their number.
+#[test]
+fn many_of_everything_is_quick() {
+    use std::fmt::Write;
+    let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for i in 0..100_000 {
+        writeln!(text, "mtllib {i}.mtl\nusemtl m{i}\ns {i}\ng {i}\nf 1 2 3").unwrap();
+    }
+    let started = std::time::Instant::now();
+    let scene = load_text(&text).unwrap();
+    eprintln!("many of everything: {:?}", started.elapsed());
+    assert_eq!((scene.triangles(), scene.meshes.len()), (100_000, 1));
+    assert!(scene.warnings.len() <= MAX_WARNINGS + 1);
+}
+
 /// Numbers that repeat, from a seed.
 struct Random(u64);
 

@@ -4,7 +4,7 @@ use super::lines::quoted;
 use crate::{Image, TextureRef, Wrap};
 use glam::{Affine2, Mat2, Vec2};
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     io::{Cursor, Read},
     path::{Path, PathBuf},
 };
@@ -116,7 +116,7 @@ pub(super) struct Textures {
     images: Vec<Image>,
     /// By colour file and cut-out file; `None`: there is no such picture.
     index_of: HashMap<(Option<PathBuf>, Option<PathBuf>), Option<usize>>,
-    reported: Vec<String>,
+    reported: HashSet<String>,
 }
 
 impl Textures {
@@ -221,9 +221,8 @@ impl Textures {
     }
 
     fn warn_once(&mut self, what: String, warnings: &mut Vec<String>) {
-        if !self.reported.contains(&what) {
-            warnings.push(what.clone());
-            self.reported.push(what);
+        if self.reported.insert(what.clone()) {
+            warnings.push(what);
         }
     }
 }
