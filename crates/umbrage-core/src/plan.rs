@@ -31,8 +31,9 @@ pub enum Draws {
 /// Which faces are left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cull {
-    /// None: a surface blocks light whichever way it faces.
-    None,
+    /// Back faces of casters that are closed and wholly in front of the light: what they block, their front faces
+    /// block too. All faces of all others, because a surface blocks light whichever way it faces.
+    BackOfClosed,
     /// As each material says.
     ByMaterial,
 }
@@ -88,7 +89,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                 target: Target::Map { storage: combination.storage, size_texel: settings.map_size_texel() },
                 clear_depth: DEPTH.clear(),
                 color: false,
-                cull: Cull::None,
+                cull: Cull::BackOfClosed,
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
@@ -123,7 +124,7 @@ impl std::fmt::Display for Pass {
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
-            Cull::None => "no culling",
+            Cull::BackOfClosed => "back faces of closed casters culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
         let draws = match self.draws {

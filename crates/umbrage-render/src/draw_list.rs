@@ -4,8 +4,10 @@ use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
 use glam::Vec3;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use umbrage::core::fit::ShadowView;
 use umbrage::core::{Aabb, Frustum};
-use umbrage_scene::Scene;
+use umbrage_scene::{Scene, is_closed};
 
 /// One draw: a mesh and consecutive instances.
 #[derive(Clone, Debug)]
@@ -14,6 +16,8 @@ pub struct Batch {
     pub mesh: usize,
     /// Pipeline variant.
     pub variant: Variant,
+    /// A closed solid wholly in front of the view, so that its back faces need not be drawn. Only set for casters.
+    pub back_hidden: bool,
     /// Instances: first and past the last, in the buffer of all views.
     pub instances: std::ops::Range<u32>,
 }
@@ -24,6 +28,7 @@ struct Item {
     instance: usize,
     variant: Variant,
     bounds_world: Aabb,
+    closed: bool,
 }
 
 /// All instances of a scene in drawing order.
@@ -32,20 +37,34 @@ pub struct Items {
     items: Vec<Item>,
 }
 
-/// Which instances a view draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Surfaces that are not mixed by alpha.
-    Solid,
-    /// Surfaces that are, far ones first.
-    Blended,
-    /// Everything that throws a shadow.
-    Casters,
+/// Which meshes are closed solids; all cores share the work.
+fn closed_meshes(scene: &Scene) -> Vec<bool> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(scene.meshes.len());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut closed = Vec::new();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(mesh) = scene.meshes.get(index) else { return closed };
+            if is_closed(mesh) {
+                closed.push(index);
+            }
+        }
+    };
+    let mut all = vec![false; scene.meshes.len()];
+    std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        for index in running.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
+            all[index] = true;
+        }
+    });
+    all
 }
 
 impl Items {
     /// Sorts a scene's instances by pipeline, material and mesh.
     pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry]) -> Self {
+        let closed = closed_meshes(scene);
         let mut items: Vec<Item> = (0..scene.instances.len())
             .map(|instance| {
                 let placed = &scene.instances[instance];
@@ -55,7 +74,8 @@ impl Items {
                     mirrored: placed.world_from_object.determinant() < 0.0,
                     ..materials[mesh.material].variant
                 };
-                Item { instance, variant, bounds_world: mesh.bounds.transformed(&placed.world_from_object) }
+                let bounds_world = mesh.bounds.transformed(&placed.world_from_object);
+                Item { instance, variant, bounds_world, closed: closed[placed.mesh] }
             })
             .collect();
         items.sort_by_key(|item| {
@@ -70,43 +90,65 @@ impl Items {
         self.items.iter().map(|item| item.bounds_world).collect()
     }
 
-    /// The draws of a view, and their instances appended to `instances`. `eye` sorts what is mixed by alpha.
-    pub fn draw_list(
+    /// The solid surfaces that a view may see; their instances are appended to `instances`.
+    pub fn solid(&self, scene: &Scene, frustum: &Frustum, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
+        let seen = self.items.iter().filter(|i| !i.variant.blend && frustum.may_see(&i.bounds_world));
+        batches(scene, seen.map(|item| (item, false)), instances)
+    }
+
+    /// The surfaces mixed by alpha that a view may see, far ones first.
+    pub fn blended(
         &self,
         scene: &Scene,
-        kind: Kind,
         frustum: &Frustum,
         eye: Vec3,
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<Batch> {
-        let mut seen: Vec<&Item> = self
-            .items
-            .iter()
-            .filter(|item| match kind {
-                Kind::Solid => !item.variant.blend,
-                Kind::Blended => item.variant.blend,
-                Kind::Casters => true,
-            })
-            .filter(|item| frustum.may_see(&item.bounds_world))
-            .collect();
-        if kind == Kind::Blended {
-            let distance = |item: &Item| item.bounds_world.center().distance_squared(eye);
-            seen.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-        }
-        let mut batches: Vec<Batch> = Vec::new();
-        for item in seen {
-            let placed = &scene.instances[item.instance];
-            let at = instances.len() as u32;
-            instances.push(GpuInstance::new(&placed.world_from_object));
-            match batches.last_mut() {
-                Some(last) if last.mesh == placed.mesh && last.variant == item.variant => {
-                    last.instances.end = at + 1
-                }
-                _ => batches.push(Batch { mesh: placed.mesh, variant: item.variant, instances: at..at + 1 }),
-            }
-        }
-        batches
+        let mut seen: Vec<&Item> =
+            self.items.iter().filter(|i| i.variant.blend && frustum.may_see(&i.bounds_world)).collect();
+        let distance = |item: &Item| item.bounds_world.center().distance_squared(eye);
+        seen.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+        batches(scene, seen.into_iter().map(|item| (item, false)), instances)
     }
+
+    /// Everything that may throw a shadow in a light's view.
+    pub fn casters(&self, scene: &Scene, view: &ShadowView, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
+        let frustum = view.frustum();
+        let in_front = |bounds: &Aabb| {
+            bounds.corners().iter().all(|p| -view.light_from_world.transform_point3(*p).z > view.near_m)
+        };
+        let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world));
+        batches(scene, seen.map(|item| (item, item.closed && in_front(&item.bounds_world))), instances)
+    }
+}
+
+/// Joins neighbours of the same mesh and state.
+fn batches<'a>(
+    scene: &Scene,
+    items: impl Iterator<Item = (&'a Item, bool)>,
+    instances: &mut Vec<GpuInstance>,
+) -> Vec<Batch> {
+    let mut batches: Vec<Batch> = Vec::new();
+    for (item, back_hidden) in items {
+        let placed = &scene.instances[item.instance];
+        let at = instances.len() as u32;
+        instances.push(GpuInstance::new(&placed.world_from_object));
+        match batches.last_mut() {
+            Some(last)
+                if (last.mesh, last.variant, last.back_hidden)
+                    == (placed.mesh, item.variant, back_hidden) =>
+            {
+                last.instances.end = at + 1;
+            }
+            _ => batches.push(Batch {
+                mesh: placed.mesh,
+                variant: item.variant,
+                back_hidden,
+                instances: at..at + 1,
+            }),
+        }
+    }
+    batches
 }
 
 /// What a list of draws asks of the GPU, counted on the CPU.

@@ -114,6 +114,17 @@ impl Renderer<'_> {
         &self.options
     }
 
+    /// What the picture shows where nothing is: the background, or white in the debug views.
+    fn cleared(&self) -> wgpu::Color {
+        let background = self.options.background.as_dvec3();
+        match self.options.view {
+            View::Final | View::Light => {
+                wgpu::Color { r: background.x, g: background.y, b: background.z, a: 1.0 }
+            }
+            _ => wgpu::Color::WHITE,
+        }
+    }
+
     fn blends(&self) -> bool {
         !self.blended.is_empty() && matches!(self.options.view, View::Final | View::Light)
     }
@@ -172,15 +183,18 @@ impl Renderer<'_> {
             recorded.set_bind_group(1, group, &[]);
             recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
         } else {
-            recorded.set_pipeline(&shadows.pipelines.solid);
+            recorded.set_pipeline(match (batch.back_hidden, batch.variant.mirrored) {
+                (true, false) => &shadows.pipelines.closed,
+                (true, true) => &shadows.pipelines.closed_mirrored,
+                (false, _) => &shadows.pipelines.open,
+            });
         }
         recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));
         recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
     }
 
     fn record_surfaces(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
-        let background = self.options.background.as_dvec3();
-        let cleared = wgpu::Color { r: background.x, g: background.y, b: background.z, a: 1.0 };
+        let cleared = self.cleared();
         let (view, resolve_target, clear, target) = match (&self.targets.gbuffer, &self.targets.multisampled)
         {
             (Some(gbuffer), _) => (gbuffer, None, wgpu::Color::TRANSPARENT, MeshTarget::Gbuffer),

@@ -38,10 +38,10 @@ pub struct MaterialEntry {
     pub variant: Variant,
 }
 
-fn textures_of(material: &Material) -> [Option<TextureRef>; 4] {
+fn textures_of(material: &Material, all_blinn: bool) -> [Option<TextureRef>; 4] {
     [
         material.base_color_texture,
-        material.metallic_roughness_texture,
+        material.metallic_roughness_texture.filter(|_| !all_blinn),
         material.normal_texture,
         material.emissive_texture,
     ]
@@ -54,49 +54,43 @@ fn gloss_of(shininess: f32) -> f32 {
     (shininess.max(1.0).log2() / 16.0).min(1.0)
 }
 
-fn gpu_material(material: &Material) -> GpuMaterial {
+fn gpu_material(material: &Material, all_blinn: bool) -> GpuMaterial {
     let base = material.base_color.truncate();
     let mut flags = if material.unlit { UNLIT } else { 0 };
-    let (specular, gloss, blinn_base_color, blinn_specular, blinn_gloss) = match material.reflectance {
-        Reflectance::MetallicRoughness { metallic, roughness } => {
+    let mut base_color = material.base_color;
+    let (specular, gloss) = match material.reflectance {
+        Reflectance::MetallicRoughness { metallic, roughness } if all_blinn => {
             // Blinn's exponent that is as wide as GGX of that roughness (Karis 2013): 2 / alpha^2 - 2.
             let alpha = (roughness * roughness).max(0.02);
             let shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
-            let blinn_specular = Vec3::splat(0.04).lerp(base, metallic) * (shininess + 2.0).sqrt().min(8.0);
-            let blinn_base = base * (1.0 - 0.7 * metallic);
-            (
-                Vec3::new(metallic, 0.0, 0.0),
-                roughness,
-                blinn_base,
-                blinn_specular.min(Vec3::ONE),
-                gloss_of(shininess),
-            )
+            let specular = Vec3::splat(0.04).lerp(base, metallic) * (shininess + 2.0).sqrt().min(8.0);
+            flags |= BLINN;
+            base_color = (base * (1.0 - 0.7 * metallic)).extend(base_color.w);
+            (specular.min(Vec3::ONE), gloss_of(shininess))
         }
+        Reflectance::MetallicRoughness { metallic, roughness } => (Vec3::new(metallic, 0.0, 0.0), roughness),
         Reflectance::Blinn { specular, shininess, .. } => {
             flags |= BLINN;
-            (specular, gloss_of(shininess), base, specular, gloss_of(shininess))
+            (specular, gloss_of(shininess))
         }
     };
     let (mut uv_sets, mut uv_rows) = (0, [Vec4::ZERO; 8]);
-    for (slot, texture) in textures_of(material).into_iter().enumerate() {
+    for (slot, texture) in textures_of(material, all_blinn).into_iter().enumerate() {
         let uv = texture.map(|t| t.uv_from_texcoord).unwrap_or_default();
         uv_rows[2 * slot] = Vec4::new(uv.matrix2.x_axis.x, uv.matrix2.y_axis.x, uv.translation.x, 0.0);
         uv_rows[2 * slot + 1] = Vec4::new(uv.matrix2.x_axis.y, uv.matrix2.y_axis.y, uv.translation.y, 0.0);
         uv_sets |= texture.map_or(0, |t| t.uv_set.min(1)) << (2 * slot);
     }
     GpuMaterial {
-        base_color: material.base_color,
+        base_color,
         specular,
         gloss,
         emissive: material.emissive,
         cutoff: if let AlphaMode::Mask { cutoff } = material.alpha { cutoff } else { 0.0 },
-        blinn_base_color,
-        blinn_gloss,
-        blinn_specular,
         normal_scale: material.normal_scale,
         flags,
         uv_sets,
-        pad: [0; 2],
+        pad: 0,
         uv_rows,
     }
 }
@@ -136,10 +130,11 @@ pub fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-/// Makes every material of a scene ready to draw.
+/// Makes every material of a scene ready to draw, on request with every one answering as Lambert and Blinn.
 pub fn make(
     device: &wgpu::Device,
     scene: &Scene,
+    all_blinn: bool,
     textures: &Textures,
     layout: &wgpu::BindGroupLayout,
     caster_layout: &wgpu::BindGroupLayout,
@@ -147,10 +142,10 @@ pub fn make(
     let entry = |material: &Material| {
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(&material.name),
-            contents: bytemuck::bytes_of(&gpu_material(material)),
+            contents: bytemuck::bytes_of(&gpu_material(material, all_blinn)),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let bound = textures_of(material);
+        let bound = textures_of(material, all_blinn);
         let views: Vec<_> =
             bound.iter().zip(ENCODINGS).map(|(t, encoding)| textures.get(*t, encoding)).collect();
         let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }];

@@ -3,12 +3,11 @@
 use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
 use crate::materials::Variant;
 use crate::options::View;
-use crate::shaders;
+use crate::shaders::{self, ShaderNeeds};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use umbrage::CasterStreams;
 use umbrage::core::layout::GpuView;
-use umbrage::core::technique::Settings;
 
 /// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
 pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -129,11 +128,11 @@ const FULL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
 };
 
 impl MeshPipelines {
-    /// Compiles the shader of these settings.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, settings: &Settings) -> Self {
+    /// Compiles the shader.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, needs: &ShaderNeeds) -> Self {
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("mesh"),
-            source: wgpu::ShaderSource::Wgsl(shaders::mesh(settings).into()),
+            source: wgpu::ShaderSource::Wgsl(shaders::mesh(needs).into()),
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("mesh"),
@@ -229,12 +228,12 @@ impl MeshPipelines {
 pub fn screen_pipeline(
     device: &wgpu::Device,
     layouts: &Layouts,
-    settings: &Settings,
+    needs: &ShaderNeeds,
     view: View,
 ) -> wgpu::RenderPipeline {
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("screen"),
-        source: wgpu::ShaderSource::Wgsl(shaders::screen(settings).into()),
+        source: wgpu::ShaderSource::Wgsl(shaders::screen(needs).into()),
     });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("screen"),
@@ -258,7 +257,18 @@ pub fn screen_pipeline(
             buffers: &[],
         },
         primitive: Default::default(),
-        depth_stencil: None,
+        // The triangle lies where nothing is, so only pixels that show a surface run the shader; the map itself
+        // covers all.
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(false),
+            depth_compare: Some(match view {
+                View::Depth => wgpu::CompareFunction::Always,
+                _ => wgpu::CompareFunction::NotEqual,
+            }),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,

@@ -1,6 +1,6 @@
 //! A scene made ready for one GPU: everything that a frame needs and no frame changes.
 
-use crate::draw_list::{Batch, Items, Kind, Work};
+use crate::draw_list::{Batch, Items, Work};
 use crate::geometry::Geometry;
 use crate::gpu::Gpu;
 use crate::layout::{GpuFrame, GpuLight, MAX_LIGHTS};
@@ -8,6 +8,7 @@ use crate::lights::{Lights, eye_of};
 use crate::materials::MaterialEntry;
 use crate::options::{RenderOptions, View};
 use crate::pipelines::{Layouts, MeshPipelines, MeshTarget, screen_pipeline};
+use crate::shaders::ShaderNeeds;
 use crate::targets::Targets;
 use crate::textures::Textures;
 use crate::{RenderError, exposure};
@@ -19,7 +20,7 @@ use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::{Combination, Filter, Storage};
 use umbrage::core::{Camera, DEPTH, Frustum, Light};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
-use umbrage_scene::{Image, Scene};
+use umbrage_scene::{Image, Reflectance, Scene};
 use wgpu::util::DeviceExt;
 
 /// Bytes between the matrices of two views in the casters' uniform buffer.
@@ -83,8 +84,14 @@ impl<'a> Renderer<'a> {
         let geometry = Geometry::new(&gpu.device, scene);
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
-        let materials =
-            crate::materials::make(&gpu.device, scene, &textures, &layouts.material, &caster_layout);
+        let materials = crate::materials::make(
+            &gpu.device,
+            scene,
+            options.all_blinn,
+            &textures,
+            &layouts.material,
+            &caster_layout,
+        );
         let items = Items::new(scene, &geometry, &materials);
         let lights = Lights::new(scene, &options.settings, exposure, &items.bounds_world())?;
         let shown = shown_view(scene, &lights, &options)?;
@@ -92,16 +99,14 @@ impl<'a> Renderer<'a> {
         let eye = Eye::new(camera, &options, shown.as_ref().map(|(light, view)| (*light, view)));
         let frustum = Frustum::from_clip(eye.clip_from_world, DEPTH);
         let mut instances = Vec::new();
-        let solid = items.draw_list(scene, Kind::Solid, &frustum, eye.position, &mut instances);
-        let blended = items.draw_list(scene, Kind::Blended, &frustum, eye.position, &mut instances);
-        let casters: Vec<_> = lights
-            .views
-            .iter()
-            .map(|view| items.draw_list(scene, Kind::Casters, &view.frustum(), eye.position, &mut instances))
-            .collect();
+        let solid = items.solid(scene, &frustum, &mut instances);
+        let blended = items.blended(scene, &frustum, eye.position, &mut instances);
+        let casters: Vec<_> =
+            lights.views.iter().map(|view| items.casters(scene, view, &mut instances)).collect();
         let shadows = make_shadows(gpu, &options, &lights, casters, &caster_layout)?;
 
-        let mut mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &options.settings);
+        let needs = shader_needs(scene, &options, &lights);
+        let mut mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
         let solid_target =
             if lit_at_once { MeshTarget::Forward { samples: options.samples } } else { MeshTarget::Gbuffer };
         mesh_pipelines.prepare(&gpu.device, solid_target, solid.iter().map(|b| b.variant));
@@ -109,8 +114,7 @@ impl<'a> Renderer<'a> {
             let target = MeshTarget::Forward { samples: options.samples };
             mesh_pipelines.prepare(&gpu.device, target, blended.iter().map(|b| b.variant));
         }
-        let screen =
-            (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &options.settings, options.view));
+        let screen = (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view));
 
         let frame = eye.frame(&options, lights.lights.len(), exposure);
         let slide_images: Vec<&Image> = lights.slides.iter().map(|i| &scene.images[*i]).collect();
@@ -190,6 +194,18 @@ impl<'a> Renderer<'a> {
     }
 }
 
+/// What the shaders of a scene must be able to do, and no more.
+fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> ShaderNeeds {
+    let used = || scene.meshes.iter().map(|mesh| &scene.materials[mesh.material].reflectance);
+    let is_blinn = |r: &Reflectance| options.all_blinn || matches!(r, Reflectance::Blinn { .. });
+    ShaderNeeds {
+        combination: options.settings.combination,
+        metallic_roughness: used().any(|r| !is_blinn(r)),
+        blinn: used().any(is_blinn),
+        views: lights.view_of_light.clone(),
+    }
+}
+
 /// The eye of the picture: the camera's, or the shown light's.
 struct Eye {
     clip_from_world: Mat4,
@@ -220,10 +236,8 @@ impl Eye {
             eye_w: self.towards.1,
             ambient: exposure::ambient(options.ambient),
             fill: options.fill,
-            background: options.background,
             light_count: light_count as u32,
             shown_light: options.shown_light as u32,
-            all_blinn: u32::from(options.all_blinn),
             exposure,
             pad: 0,
         }

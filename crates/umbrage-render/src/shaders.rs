@@ -2,7 +2,7 @@
 
 use crate::layout::MAX_LIGHTS;
 use umbrage::core::DEPTH;
-use umbrage::core::technique::{Combination, Settings};
+use umbrage::core::technique::Combination;
 use umbrage::core::wgsl::assemble;
 
 const FRAME: &str = include_str!("../wgsl/frame.wgsl");
@@ -16,21 +16,59 @@ fn filter_function(combination: &Combination) -> String {
     format!("umbrage_filter_{}", combination.filter.row().id)
 }
 
+/// What a scene's shaders must be able to do. What is not needed is not in their text: software rasterisers, and
+/// many GPUs, pay for both sides of a branch.
+#[derive(Clone, Debug)]
+pub struct ShaderNeeds {
+    /// The map, if there is one.
+    pub combination: Option<Combination>,
+    /// Does any surface answer by metallic-roughness?
+    pub metallic_roughness: bool,
+    /// Does any surface answer by Lambert and Blinn?
+    pub blinn: bool,
+    /// The map's view of each light.
+    pub views: Vec<Option<usize>>,
+}
+
+/// Up to how many lights are written out one by one: an index that is a constant is far cheaper than one that is not.
+const WRITTEN_OUT: usize = 4;
+
+/// The function that adds up all lights.
+fn lit_by_all(views: &[Option<usize>]) -> String {
+    let sum = if views.len() <= WRITTEN_OUT {
+        let one = |(light, view): (usize, &Option<usize>)| {
+            format!("    sum += lit_by(lights[{light}], views[{}], s, p_world, v);\n", view.unwrap_or(0))
+        };
+        views.iter().enumerate().map(one).collect()
+    } else {
+        "    for (var i = 0u; i < frame.light_count; i++) {
+        sum += lit_by(lights[i], views[max(lights[i].view, 0)], s, p_world, v);
+    }
+"
+        .to_owned()
+    };
+    format!(
+        "fn lit_by_all(s: Surface, p_world: vec3f, v: vec3f) -> vec3f {{
+    var sum = vec3f(0.0);
+{sum}    return sum;
+}}
+"
+    )
+}
+
 /// What all shaders begin with: the library, the frame, and the technique's visibility.
-fn prelude(combination: Option<&Combination>) -> String {
-    let mut modules = combination.map(Combination::modules).unwrap_or_default();
+fn prelude(needs: &ShaderNeeds) -> String {
+    let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
     // The debug views locate points whatever the technique is.
     modules.extend(["view", "light", "cookie", "locate"]);
     let library = assemble(&modules).unwrap_or_else(|e| format!("// {e}\n"));
-    let visibility = match combination {
+    let visibility = match &needs.combination {
         // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
         Some(combination) => format!(
             "fn map_visibility(view: UmbrageView, kind: u32, p_world: vec3f) -> f32 {{
     let at = umbrage_locate(view, p_world);
-    if !at.inside {{
-        return select(0.0, 1.0, kind == DIRECTIONAL);
-    }}
-    return {}(maps, map_compare, view, at);
+    let outside = select(0.0, 1.0, kind == DIRECTIONAL);
+    return select(outside, {}(maps, map_compare, view, at), at.inside);
 }}
 ",
             filter_function(combination)
@@ -38,28 +76,40 @@ fn prelude(combination: Option<&Combination>) -> String {
         None => "fn map_visibility(view: UmbrageView, kind: u32, p_world: vec3f) -> f32 { return 1.0; }\n"
             .to_owned(),
     };
-    let constants = format!("const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n", DEPTH.clear());
-    [&library, &constants, FRAME, SURFACE, &visibility, SHADE].join("\n")
+    let constants = format!(
+        "const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\nconst ANY_METALLIC_ROUGHNESS = {};\nconst ANY_BLINN = {};\n",
+        DEPTH.clear(),
+        needs.metallic_roughness,
+        needs.blinn,
+    );
+    [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(&needs.views)].join("\n")
 }
 
 /// The shader that draws the scene's meshes.
-pub fn mesh(settings: &Settings) -> String {
-    [&prelude(settings.combination.as_ref()), MESH].join("\n")
+pub fn mesh(needs: &ShaderNeeds) -> String {
+    [&prelude(needs), MESH].join("\n")
 }
 
 /// The shader that covers the screen.
-pub fn screen(settings: &Settings) -> String {
-    [&prelude(settings.combination.as_ref()), SCREEN].join("\n")
+pub fn screen(needs: &ShaderNeeds) -> String {
+    [&prelude(needs), SCREEN].join("\n")
 }
 
 /// Every shader that the renderer can make, with a name: for validation.
 #[cfg(test)]
 pub fn all() -> Vec<(String, String)> {
     let mut all = Vec::new();
-    for technique in umbrage::core::technique::TECHNIQUES {
-        let settings = Settings::new(technique.id, []).expect("from the table");
-        all.push((format!("mesh of {}", technique.id), mesh(&settings)));
-        all.push((format!("screen of {}", technique.id), screen(&settings)));
+    let mut combinations: Vec<Option<Combination>> = Combination::all().map(Some).collect();
+    combinations.push(None);
+    for combination in combinations {
+        for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
+            for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
+                let views = (0..lights).map(|i| (i % 2 == 0).then_some(i / 2)).collect();
+                let needs = ShaderNeeds { combination, metallic_roughness, blinn, views };
+                all.push((format!("mesh for {needs:?}"), mesh(&needs)));
+                all.push((format!("screen for {needs:?}"), screen(&needs)));
+            }
+        }
     }
     all
 }

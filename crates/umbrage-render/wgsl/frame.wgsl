@@ -11,13 +11,9 @@ struct Frame {
     ambient: vec3f,
     // Share of the diffuse light that stays in shadow, 0..1.
     fill: f32,
-    // Linear RGB where nothing is drawn.
-    background: vec3f,
     light_count: u32,
     // The light that the debug views show.
     shown_light: u32,
-    // 1: every material answers as ambient, Lambert and Blinn.
-    all_blinn: u32,
     exposure: f32,
     pad: u32,
 }

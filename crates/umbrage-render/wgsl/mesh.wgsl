@@ -15,15 +15,11 @@ struct Material {
     gloss: f32,
     emissive: vec3f,
     cutoff: f32,
-    // The same material as Lambert and Blinn, for when all are shown so.
-    blinn_base_color: vec3f,
-    blinn_gloss: f32,
-    blinn_specular: vec3f,
     normal_scale: f32,
     flags: u32,
     // Two bits a texture, which set of coordinates: base, metallic-roughness, normal, emissive.
     uv_sets: u32,
-    pad: vec2u,
+    pad: u32,
     // uv = (dot(x, (uv, 1)), dot(y, (uv, 1))): two rows a texture.
     uv_rows: array<vec4f, 8>,
 }
@@ -118,16 +114,9 @@ fn plain_surface(p_world: vec3f, normal: vec3f, front: bool) -> Fragment {
     let across = cross(dpdy(p_world), dpdx(p_world));
     s.geometric_normal = across * inverseSqrt(max(dot(across, across), 1e-38));
     s.flags = material.flags;
-    if frame.all_blinn != 0u {
-        s.flags |= BLINN;
-        s.base_color = material.blinn_base_color;
-        s.specular = material.blinn_specular;
-        s.gloss = material.blinn_gloss;
-    } else {
-        s.base_color = material.base_color.rgb;
-        s.specular = material.specular;
-        s.gloss = material.gloss;
-    }
+    s.base_color = material.base_color.rgb;
+    s.specular = material.specular;
+    s.gloss = material.gloss;
     return Fragment(s, material.emissive, material.base_color.a);
 }
 
@@ -142,10 +131,8 @@ fn full_surface(in: FullVertex, front: bool) -> Fragment {
     }
     if HAS_METALLIC_ROUGHNESS_TEXTURE {
         let texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, texture_uv(1u, in.uv));
-        if frame.all_blinn == 0u {
-            f.surface.gloss *= texel.g;
-            f.surface.specular.x *= texel.b;
-        }
+        f.surface.gloss *= texel.g;
+        f.surface.specular.x *= texel.b;
     }
     if HAS_NORMAL_TEXTURE {
         let texel = textureSample(normal_texture, normal_sampler, texture_uv(2u, in.uv)).xyz * 2.0 - 1.0;

@@ -3,17 +3,15 @@
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var depth: texture_depth_2d;
 
-// One triangle over the whole picture.
+// One triangle over the whole picture, at the depth of nothing.
 @vertex
 fn vs_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, DEPTH_CLEAR, 1.0);
 }
 
 struct Pixel {
     surface: Surface,
     p_world: vec3f,
-    // Is anything there?
-    hit: bool,
 }
 
 fn pixel(position: vec4f) -> Pixel {
@@ -21,27 +19,24 @@ fn pixel(position: vec4f) -> Pixel {
     let stored = textureLoad(depth, at, 0);
     let uv = position.xy / vec2f(textureDimensions(depth));
     let p = frame.world_from_clip * vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, stored, 1.0);
-    return Pixel(unpack_surface(textureLoad(gbuffer, at, 0)), p.xyz / p.w, stored != DEPTH_CLEAR);
+    return Pixel(unpack_surface(textureLoad(gbuffer, at, 0)), p.xyz / p.w);
 }
 
 @fragment
 fn fs_final(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
-    if !here.hit {
-        return vec4f(frame.background, 1.0);
-    }
     return vec4f(shade(here.surface, here.p_world), 1.0);
 }
 
-// V of the shown light; 0 on surfaces that face away from it, 1 where nothing is.
+// V of the shown light; 0 on surfaces that face away from it. Where nothing is it stays 1.
 @fragment
 fn fs_visibility(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
     let light = lights[frame.shown_light];
     let arriving = incoming(light, here.p_world);
     let facing = dot(here.surface.shading_normal, arriving.towards) > 0.0;
-    let seen = select(0.0, visibility(light, here.p_world, arriving.towards), facing);
-    return vec4f(select(1.0, seen, here.hit), 0.0, 0.0, 1.0);
+    let seen = select(0.0, visibility(light, views[max(light.view, 0)], here.p_world, arriving.towards), facing);
+    return vec4f(seen, 0.0, 0.0, 1.0);
 }
 
 // Distance from near (0) to far (1) along the light's axis.
@@ -64,7 +59,7 @@ fn fs_distance(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let view = views[max(light.view, 0)];
     let at = umbrage_locate(view, here.p_world);
     let share = share_of_depth(light, along_m(light, at.depth, view.perspective != 0u));
-    return vec4f(vec3f(select(1.0, share, here.hit && at.inside)), 1.0);
+    return vec4f(vec3f(select(1.0, share, at.inside)), 1.0);
 }
 
 // The map projected on the scene: what the light saw on the way to each surface.
@@ -77,7 +72,7 @@ fn fs_projected(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(saturate(at.uv) * vec2f(textureDimensions(maps)));
     let stored = textureLoad(maps, min(texel, textureDimensions(maps) - 1u), view.layer, 0);
     let share = share_of_depth(light, along_m(light, stored, view.perspective != 0u));
-    return vec4f(vec3f(select(1.0, share, here.hit && at.inside)), 1.0);
+    return vec4f(vec3f(select(1.0, share, at.inside)), 1.0);
 }
 
 // The map itself, letter-boxed.

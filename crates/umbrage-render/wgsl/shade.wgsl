@@ -6,14 +6,10 @@ fn towards_eye(p_world: vec3f) -> vec3f {
 }
 
 // Visibility V of a light from a point: 0 behind it and outside its cone, else what the technique says.
-fn visibility(light: Light, p_world: vec3f, towards_light: vec3f) -> f32 {
-    if light.kind == SPOT && dot(-towards_light, light.direction) < light.cos_outer {
-        return 0.0;
-    }
-    if light.view < 0 {
-        return 1.0;
-    }
-    return map_visibility(views[light.view], light.kind, p_world);
+fn visibility(light: Light, view: UmbrageView, p_world: vec3f, towards_light: vec3f) -> f32 {
+    let in_cone = light.kind != SPOT || dot(-towards_light, light.direction) >= light.cos_outer;
+    let seen = select(map_visibility(view, light.kind, p_world), 1.0, light.view < 0);
+    return select(0.0, seen, in_cone);
 }
 
 struct Incoming {
@@ -75,30 +71,30 @@ fn answer_blinn(s: Surface, n_dot_l: f32, l: vec3f, v: vec3f) -> Answer {
     return Answer(s.base_color * (n_dot_l / PI), s.specular * (highlight * n_dot_l / PI));
 }
 
+// What one light adds to a surface.
+fn lit_by(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, v: vec3f) -> vec3f {
+    let arriving = incoming(light, p_world);
+    let n_dot_l = dot(s.shading_normal, arriving.towards);
+    if n_dot_l <= 0.0 {
+        return vec3f(0.0);
+    }
+    var answer: Answer;
+    if ANY_METALLIC_ROUGHNESS {
+        answer = answer_metallic_roughness(s, n_dot_l, arriving.towards, v);
+    }
+    if ANY_BLINN {
+        let blinn = answer_blinn(s, n_dot_l, arriving.towards, v);
+        if !ANY_METALLIC_ROUGHNESS || (s.flags & BLINN) != 0u {
+            answer = blinn;
+        }
+    }
+    let seen = visibility(light, view, p_world, arriving.towards);
+    return arriving.illuminance * (answer.diffuse * mix(frame.fill, 1.0, seen) + answer.specular * seen);
+}
+
 // Colour of a surface under all lights, exposed, not clamped.
 fn shade(s: Surface, p_world: vec3f) -> vec3f {
-    if (s.flags & UNLIT) != 0u {
-        return s.base_color;
-    }
-    let blinn = (s.flags & BLINN) != 0u;
-    let v = towards_eye(p_world);
     // Ambient light: metals give it back in their own colour, everything else in its base colour.
-    var color = frame.ambient * s.base_color;
-    for (var i = 0u; i < frame.light_count; i++) {
-        let light = lights[i];
-        let arriving = incoming(light, p_world);
-        let n_dot_l = dot(s.shading_normal, arriving.towards);
-        if n_dot_l <= 0.0 || all(arriving.illuminance <= vec3f(0.0)) {
-            continue;
-        }
-        var answer: Answer;
-        if blinn {
-            answer = answer_blinn(s, n_dot_l, arriving.towards, v);
-        } else {
-            answer = answer_metallic_roughness(s, n_dot_l, arriving.towards, v);
-        }
-        let seen = visibility(light, p_world, arriving.towards);
-        color += arriving.illuminance * (answer.diffuse * mix(frame.fill, 1.0, seen) + answer.specular * seen);
-    }
-    return color;
+    let color = frame.ambient * s.base_color + lit_by_all(s, p_world, towards_eye(p_world));
+    return select(color, s.base_color, (s.flags & UNLIT) != 0u);
 }

@@ -3,6 +3,7 @@
 //! [`load`] takes what a user types (a path or `builtin:NAME`) and gives a [`Scene`]: flat lists, world space, no GPU.
 
 mod builtin;
+mod closed;
 mod defaults;
 mod error;
 mod gltf;
@@ -11,6 +12,7 @@ mod obj;
 pub mod scene;
 
 pub use builtin::{Builtin, builtins};
+pub use closed::is_closed;
 pub use defaults::{add_defaults, add_ground};
 pub use error::SceneError;
 pub use scene::*;

@@ -45,8 +45,12 @@ pub fn depth_compare() -> wgpu::CompareFunction {
 /// Pipelines that draw casters, and the layouts that they take.
 #[derive(Debug)]
 pub struct CasterPipelines {
-    /// Casters without holes.
-    pub solid: wgpu::RenderPipeline,
+    /// Casters that are no closed solids, or not wholly in front of the light.
+    pub open: wgpu::RenderPipeline,
+    /// Closed casters wholly in front of the light: what their back faces block, their front faces block too.
+    pub closed: wgpu::RenderPipeline,
+    /// The same, placed by a mirroring transform, which turns their winding.
+    pub closed_mirrored: wgpu::RenderPipeline,
     /// Casters whose texture cuts holes.
     pub cut_out: wgpu::RenderPipeline,
     /// Group 0: `clip_from_world`, a uniform buffer with a dynamic offset.
@@ -103,7 +107,7 @@ impl CasterPipelines {
                 count: None,
             }],
         });
-        let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool| {
+        let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
                 bind_group_layouts: groups,
@@ -119,8 +123,7 @@ impl CasterPipelines {
                     compilation_options: Default::default(),
                     buffers: if cut_out { &buffers } else { &buffers[..2] },
                 },
-                // No culling: a surface blocks light whichever way it faces.
-                primitive: Default::default(),
+                primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format,
                     depth_write_enabled: Some(true),
@@ -143,9 +146,17 @@ impl CasterPipelines {
                 cache: None,
             })
         };
+        let solid = [Some(&view_layout)];
         Self {
-            solid: pipeline("umbrage solid caster", &[Some(&view_layout)], false),
-            cut_out: pipeline("umbrage cut-out caster", &[Some(&view_layout), Some(cut_out_layout)], true),
+            open: pipeline("umbrage open caster", &solid, false, None),
+            closed: pipeline("umbrage closed caster", &solid, false, Some(wgpu::Face::Back)),
+            closed_mirrored: pipeline("umbrage mirrored caster", &solid, false, Some(wgpu::Face::Front)),
+            cut_out: pipeline(
+                "umbrage cut-out caster",
+                &[Some(&view_layout), Some(cut_out_layout)],
+                true,
+                None,
+            ),
             view_layout,
         }
     }
