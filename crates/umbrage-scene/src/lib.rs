@@ -3,10 +3,12 @@
 //! [`load`] takes what a user types (a path or `builtin:NAME`) and gives a [`Scene`]: flat lists, world space, no GPU.
 
 mod builtin;
+mod check;
 mod error;
 mod gltf;
 mod obj;
 pub mod scene;
+mod tangents;
 
 pub use error::SceneError;
 pub use scene::*;
@@ -22,12 +24,15 @@ pub fn load(spec: &str) -> Result<Scene, SceneError> {
     let path = std::path::Path::new(spec);
     let bytes = std::fs::read(path).map_err(|e| SceneError::read(path, &e))?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match ending.as_str() {
-        "gltf" | "glb" => gltf::load(path, &bytes),
-        "obj" => obj::load(path, &bytes),
-        _ => Err(SceneError::UnknownFormat {
-            path: path.to_owned(),
-            reason: "not a scene that is known by its ending; .gltf, .glb and .obj are".into(),
-        }),
-    }
+    let scene = match ending.as_str() {
+        "gltf" | "glb" => gltf::load(path, &bytes)?,
+        "obj" => obj::load(path, &bytes)?,
+        _ => {
+            return Err(SceneError::UnknownFormat {
+                path: path.to_owned(),
+                reason: "not a scene that is known by its ending; .gltf, .glb and .obj are".into(),
+            });
+        }
+    };
+    check::check(scene, path)
 }
