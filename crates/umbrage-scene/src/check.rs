@@ -39,8 +39,11 @@ pub(crate) fn check(mut scene: Scene, path: &Path) -> Result<Scene, SceneError> 
     }
     instances(&mut scene).map_err(malformed)?;
     if scene.instances.is_empty() {
-        let what =
-            if dropped > 0 { "all of its triangles are without area" } else { "no visible node has a mesh" };
+        let what = if dropped > 0 {
+            "all of its triangles are without area"
+        } else {
+            "nothing that is shown has a mesh of triangles"
+        };
         return Err(SceneError::NoTriangles {
             path: path.to_owned(),
             what: format!("{what}; check the export"),

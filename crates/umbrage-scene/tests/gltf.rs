@@ -23,7 +23,8 @@ fn readme_rows(text: &str) -> Vec<Row> {
             folder = heading.trim();
         }
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let Some(name) = cells.get(1).and_then(|c| c.strip_prefix('`')).and_then(|c| c.strip_suffix('`')) else {
+        let Some(name) = cells.get(1).and_then(|c| c.strip_prefix('`')).and_then(|c| c.strip_suffix('`'))
+        else {
             continue;
         };
         // Two shapes of table: with and without stored triangles, nodes and textures.
@@ -99,7 +100,8 @@ fn the_readmes_tables_hold() {
 fn the_table_test_can_fail() {
     assert!(agrees(0.36712, 0.367) && agrees(2048.0, 2050.0) && agrees(0.0, 0.0));
     assert!(!agrees(0.3676, 0.367) && !agrees(2060.0, 2050.0) && !agrees(0.01, 0.0));
-    let rows = readme_rows("## a b\n| `c.glb` | 1 | 1,234 | 1 | none | 1 × 2.5 × 2.05e+03 |\n| `c.obj` | 1 | 1 |");
+    let rows =
+        readme_rows("## a b\n| `c.glb` | 1 | 1,234 | 1 | none | 1 × 2.5 × 2.05e+03 |\n| `c.obj` | 1 | 1 |");
     assert_eq!(rows.len(), 1);
     assert_eq!((rows[0].file.as_str(), rows[0].drawn), ("a b/c.glb", 1234));
     assert_eq!(rows[0].extents, Some([1.0, 2.5, 2050.0]));

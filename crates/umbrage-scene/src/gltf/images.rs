@@ -168,11 +168,7 @@ mod tests {
             assert_eq!((width, height, rgba.len()), (2, 1, 8), "{:?}", kind.color());
         }
         let white = D::ImageLuma16(image::ImageBuffer::from_pixel(1, 1, image::Luma([0x00FF])));
-        assert_eq!(
-            decode(&png(&white), &Mutex::new(0)).unwrap().2,
-            [1, 1, 1, 255],
-            "rounded from 16 bits"
-        );
+        assert_eq!(decode(&png(&white), &Mutex::new(0)).unwrap().2, [1, 1, 1, 255], "rounded from 16 bits");
     }
 
     #[test]

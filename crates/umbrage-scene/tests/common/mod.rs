@@ -74,7 +74,11 @@ fn assert_mesh(mesh: &Mesh, materials: usize) {
     for length in [mesh.tangents.len(), mesh.uvs.len(), mesh.uvs1.len(), mesh.colors.len()] {
         assert!(length == 0 || length == count, "{length} of {count}");
     }
-    assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3), "{}: normals are unit vectors", mesh.name);
+    assert!(
+        mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-3),
+        "{}: normals are unit vectors",
+        mesh.name
+    );
     let unit = |t: &glam::Vec4| (t.truncate().length() - 1.0).abs() < 1e-3 && t.w.abs() == 1.0;
     assert!(mesh.tangents.iter().all(unit), "{}: tangents are unit vectors", mesh.name);
 }
