@@ -113,7 +113,7 @@ fn lists(mesh: &Mesh, materials: usize) -> Result<(), String> {
     if mesh.normals.len() != count {
         return Err(format!("{} normals for {count} vertices", mesh.normals.len()));
     }
-    if mesh.indices.len() % 3 != 0 {
+    if !mesh.indices.len().is_multiple_of(3) {
         return Err(format!("{} indices are no whole triangles", mesh.indices.len()));
     }
     if mesh.material >= materials {

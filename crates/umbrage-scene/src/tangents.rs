@@ -104,6 +104,7 @@ pub(crate) fn usable(tangent: Option<[f32; 4]>, normal: Vec3) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     /// Two triangles in z = 0; the second one's texture is mirrored when `mirrored`.
     fn quad(mirrored: bool) -> Mesh {
@@ -146,5 +147,30 @@ mod tests {
         let mut flat = Mesh { uvs: vec![Vec2::ZERO; 5], ..quad(false) };
         generate(&mut flat, 0);
         assert!(flat.tangents.iter().all(|t| t.is_finite() && (t.truncate().length() - 1.0).abs() < 1e-5));
+    }
+
+    /// Tangents that another tool wrote into a file, made again: the oracle for direction and handedness.
+    #[test]
+    fn tangents_agree_with_those_that_a_file_brings() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
+        let file = root.join("flight-helmet/FlightHelmet.gltf");
+        if !file.is_file() {
+            eprintln!("SKIPPED: there is no {}", file.display());
+            return;
+        }
+        let scene = crate::load(&file.to_string_lossy()).unwrap();
+        let text = std::fs::read_to_string(&file).unwrap();
+        assert!(text.contains("TANGENT"), "the file has no tangents to compare with");
+        for given in scene.meshes.iter().filter(|mesh| !mesh.tangents.is_empty()) {
+            let mut made = Mesh { tangents: vec![], ..given.clone() };
+            generate(&mut made, 0);
+            let corners = given.indices.iter().zip(&made.indices);
+            let agree = corners.filter(|(a, b)| {
+                let (a, b) = (given.tangents[**a as usize], made.tangents[**b as usize]);
+                a.w == b.w && a.truncate().dot(b.truncate()) > 0.9
+            });
+            let (agree, all) = (agree.count(), given.indices.len());
+            assert!(agree * 100 > all * 95, "{}: {agree} of {all} corners agree", given.name);
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! glTF files that others made. The oracles are the tables of the scenes' README, which trimesh and gltf-validator
 //! filled in, and numbers read off the files by hand.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::{assert_sound, extents, load_shared, shared};
@@ -161,7 +163,7 @@ fn texture_transforms_have_the_files_numbers() {
     let at = |name: &str, u: f32, v: f32| of(name).uv_from_texcoord.transform_point2(Vec2::new(u, v));
     assert_eq!(at("Offset UV", 0.25, 0.25), Vec2::splat(0.75));
     assert_eq!(at("Scale", 1.0, 0.5), Vec2::new(1.5, 0.75));
-    let (sin, cos) = 0.392_699_1_f32.sin_cos();
+    let (sin, cos) = std::f32::consts::FRAC_PI_8.sin_cos();
     assert!((at("Rotation", 1.0, 0.0) - Vec2::new(cos, -sin)).length() < 1e-6);
     let (sin, cos) = 0.3_f32.sin_cos();
     assert!((at("All", 0.0, 1.0) - Vec2::new(1.5 * sin - 0.2, 1.5 * cos - 0.1)).length() < 1e-6);
@@ -205,6 +207,14 @@ fn normal_maps_get_tangents_and_given_ones_stay() {
         let mapped = lamp.materials[mesh.material].normal_texture.is_some();
         assert!(!mapped || mesh.tangents.len() == mesh.positions.len(), "{}", mesh.name);
     }
+    let spaces = load_shared("loader-features/Box With Spaces/Box With Spaces.gltf").unwrap();
+    assert!(!spaces.images.is_empty() && spaces.warnings.is_empty(), "{:?}", spaces.warnings);
+    let webp = load_shared("required-extensions/truck-town-webp/town_model.gltf").unwrap();
+    assert!(
+        !webp.images.is_empty() && !webp.warnings.iter().any(|w| w.contains("texture")),
+        "{:?}",
+        webp.warnings
+    );
     let unicode = load_shared("loader-features/Unicode❤♻Test/Unicode❤♻Test.glb").unwrap();
     assert_eq!((unicode.name.as_str(), unicode.images.len()), ("Unicode❤♻Test", 1));
 }

@@ -1,5 +1,7 @@
 //! glTF features in files made on the spot, with expectations worked out by hand.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use base64::Engine as _;

@@ -88,6 +88,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn geometry_has_a_budget() {
+        let document = Document::open(Path::new("x.gltf"), json::Root::default(), None).unwrap();
+        document.charge(1 << 30, 3).unwrap();
+        assert!(document.charge(1 << 30, 2).unwrap_err().contains("4 GiB"));
+        document.charge(1 << 30, 1).unwrap();
+        assert!(document.charge(1, 1).is_err() && document.charge(usize::MAX, usize::MAX).is_err());
+    }
+
+    #[test]
     fn messages_stay_on_one_line() {
         assert_eq!(one_line("a\nb\u{1b}[31m\u{2028}c"), "a b [31m c");
         assert_eq!(label("mesh", 3, Some(&"x".repeat(99))).len(), "mesh 3 \"\"".len() + 60);

@@ -144,7 +144,7 @@ impl Reader<'_> {
                 "{place}: index {at} is {index}, but there are {count} vertices; export it again"
             ));
         }
-        if mode == Mode::Triangles && corners.len() % 3 != 0 {
+        if mode == Mode::Triangles && !corners.len().is_multiple_of(3) {
             let over = corners.len() % 3;
             warnings.push(format!("{}: {over} indices are left over from whole triangles", self.place));
         }

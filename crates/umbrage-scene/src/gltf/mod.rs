@@ -41,6 +41,33 @@ pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
     draco::decompress(&mut document).map_err(malformed)?;
     let mut scene = assemble::scene(&document, &mut warnings).map_err(malformed)?;
     scene.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    scene.warnings = warnings.iter().map(|warning| document::one_line(warning)).collect();
+    scene.warnings = for_the_eye(&warnings);
     Ok(scene)
+}
+
+/// Each warning once, on one line, and no more than a person reads.
+fn for_the_eye(warnings: &[String]) -> Vec<String> {
+    const SHOWN: usize = 30;
+    let mut seen = std::collections::HashSet::new();
+    let mut lines: Vec<String> =
+        warnings.iter().map(|w| document::one_line(w)).filter(|w| seen.insert(w.clone())).collect();
+    if lines.len() > SHOWN {
+        let more = lines.len() - SHOWN;
+        lines.truncate(SHOWN);
+        lines.push(format!("and {more} more of such kinds"));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_are_said_once_and_not_without_end() {
+        let twice = ["a\nb", "a\nb"].map(String::from);
+        assert_eq!(for_the_eye(&twice), ["a b"]);
+        let many: Vec<String> = (0..100).map(|i| i.to_string()).collect();
+        assert_eq!(for_the_eye(&many).len(), 31);
+    }
 }

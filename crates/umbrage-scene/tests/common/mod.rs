@@ -68,7 +68,7 @@ pub fn assert_sound(scene: &Scene) {
 
 fn assert_mesh(mesh: &Mesh, materials: usize) {
     let count = mesh.positions.len();
-    assert!(mesh.material < materials && !mesh.indices.is_empty() && mesh.indices.len() % 3 == 0);
+    assert!(mesh.material < materials && !mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
     assert!(mesh.indices.iter().all(|i| (*i as usize) < count));
     assert_eq!(mesh.normals.len(), count);
     for length in [mesh.tangents.len(), mesh.uvs.len(), mesh.uvs1.len(), mesh.colors.len()] {
