@@ -3,6 +3,7 @@
 use crate::Mesh;
 use glam::{Vec2, Vec3, Vec4};
 use std::collections::HashMap;
+use std::sync::Mutex;
 
 /// Gives a mesh tangents along its `uv_set`th texture coordinates. Vertices whose triangles disagree are split, so the
 /// number of vertices may grow. A mesh without those coordinates, or too odd for the method, stays as it is.
@@ -17,6 +18,26 @@ pub(crate) fn generate(mesh: &mut Mesh, uv_set: u32) {
     }
     let tangents = corners.tangents;
     split(mesh, &tangents);
+}
+
+/// [`generate`] for each mesh that has a set to follow, on every core.
+pub(crate) fn generate_all(meshes: &mut [Mesh], uv_sets: &[Option<u32>]) {
+    let jobs: Vec<(&mut Mesh, u32)> =
+        meshes.iter_mut().zip(uv_sets).filter_map(|(mesh, set)| Some((mesh, (*set)?))).collect();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(jobs.len());
+    let queue = Mutex::new(jobs.into_iter());
+    let next = || queue.lock().ok()?.next();
+    let work = || {
+        while let Some((mesh, uv_set)) = next() {
+            generate(mesh, uv_set);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..cores {
+            scope.spawn(work);
+        }
+        work();
+    });
 }
 
 /// What the method asks of a mesh, and what it answers for each corner of each triangle.

@@ -15,14 +15,27 @@ const UNNAMED: usize = usize::MAX;
 /// The scene that a document describes. Its name and its last checks are the caller's.
 pub(super) fn scene(document: &Document<'_>, warnings: &mut Vec<String>) -> Result<Scene, String> {
     let tree = nodes::walk(&document.root, warnings)?;
-    let mut builder =
-        Builder { document, world: &tree.world, shared: HashMap::new(), scene: Scene::default() };
+    let mut builder = Builder {
+        document,
+        world: &tree.world,
+        shared: HashMap::new(),
+        scene: Scene::default(),
+        tangent_sets: Vec::new(),
+    };
     for &node in &tree.drawn {
         builder.node(node, warnings)?;
     }
-    let mut scene = builder.scene;
+    let Builder { mut scene, tangent_sets, .. } = builder;
     scene.materials = number_materials(document, &mut scene.meshes, warnings)?;
-    scene.images = images::load(document, &mut scene.materials, warnings)?;
+    // The two long jobs of a textured scene know nothing of each other.
+    let Scene { meshes, materials, .. } = &mut scene;
+    let pictures = std::thread::scope(|scope| {
+        let pictures = scope.spawn(|| images::load(document, materials, warnings));
+        tangents::generate_all(meshes, &tangent_sets);
+        pictures.join()
+    });
+    scene.images =
+        pictures.map_err(|_| "its pictures cannot be decoded; export the file again".to_owned())??;
     scene.lights = lights::read(document, &tree, warnings);
     scene.cameras = cameras::read(document, &tree, &scene.bounds(), warnings);
     Ok(scene)
@@ -57,6 +70,8 @@ struct Builder<'a> {
     /// Meshes that do not depend on the node, by mesh and primitive; `None` where there is nothing to draw.
     shared: HashMap<(usize, usize), Option<usize>>,
     scene: Scene,
+    /// For each mesh, the texture coordinates along which it still needs tangents.
+    tangent_sets: Vec<Option<u32>>,
 }
 
 impl Builder<'_> {
@@ -117,7 +132,9 @@ impl Builder<'_> {
                 }
                 let name = self.document.root.meshes[mesh].name.clone().unwrap_or_default();
                 let material = json.material.map_or(UNNAMED, |material| material.value());
-                self.scene.meshes.push(self.finish(read, name, material)?);
+                let (mesh, tangent_set) = self.finish(read, name, material)?;
+                self.scene.meshes.push(mesh);
+                self.tangent_sets.push(tangent_set);
                 Some(self.scene.meshes.len() - 1)
             }
         };
@@ -127,7 +144,8 @@ impl Builder<'_> {
         Ok((made, baked))
     }
 
-    fn finish(&self, read: Geometry, name: String, material: usize) -> Result<Mesh, String> {
+    /// The mesh, and along which texture coordinates it still needs tangents.
+    fn finish(&self, read: Geometry, name: String, material: usize) -> Result<(Mesh, Option<u32>), String> {
         let Geometry { positions, normals, tangents, uvs: [uvs, uvs1], colors, indices, .. } = read;
         let mut mesh = Mesh { name, positions, uvs, uvs1, colors, indices, material, ..Mesh::default() };
         match normals {
@@ -147,15 +165,16 @@ impl Builder<'_> {
                 facet(&mut mesh);
             }
         }
+        let mut tangent_set = None;
         if material != UNNAMED && mesh.tangents.is_empty() {
             // Whatever is wrong with the texture is said once, where the material is read.
             if let Some(map) = materials::normal_texture(self.document, material, &mut Vec::new())? {
                 self.document.charge(mesh.indices.len(), 160)?;
-                tangents::generate(&mut mesh, map.uv_set);
+                tangent_set = Some(map.uv_set);
             }
         }
         mesh.bounds = Aabb::from_points(mesh.indices.iter().map(|i| mesh.positions[*i as usize]));
-        Ok(mesh)
+        Ok((mesh, tangent_set))
     }
 }
 

@@ -4,9 +4,9 @@ use super::buffers;
 use crate::SceneError;
 use gltf::json;
 use std::borrow::Cow;
-use std::cell::Cell;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a file may ask for in decoded geometry before it is refused: a few hundred bytes of JSON can announce more
 /// than any memory holds. 4 GiB is about 60 million vertices.
@@ -24,7 +24,8 @@ pub(super) struct Document<'a> {
     pub(super) decompressed_views: HashMap<usize, Vec<u8>>,
     /// Accessors whose elements came out of a compressed mesh, tightly packed, by index.
     pub(super) decompressed_accessors: HashMap<usize, Vec<u8>>,
-    budget: Cell<u64>,
+    /// What is left of [`GEOMETRY_BYTES_MAX`]. Atomic only so that pictures may be decoded meanwhile.
+    budget: AtomicU64,
 }
 
 impl<'a> Document<'a> {
@@ -37,16 +38,17 @@ impl<'a> Document<'a> {
             buffers,
             decompressed_views: HashMap::new(),
             decompressed_accessors: HashMap::new(),
-            budget: Cell::new(GEOMETRY_BYTES_MAX),
+            budget: AtomicU64::new(GEOMETRY_BYTES_MAX),
         })
     }
 
     /// Takes `count` elements of `size` bytes out of what a file may ask for.
     pub(super) fn charge(&self, count: usize, size: usize) -> Result<(), String> {
         let bytes = (count as u64).saturating_mul(size as u64);
-        match self.budget.get().checked_sub(bytes) {
+        let rest = self.budget.load(Ordering::Relaxed).checked_sub(bytes);
+        match rest {
             Some(rest) => {
-                self.budget.set(rest);
+                self.budget.store(rest, Ordering::Relaxed);
                 Ok(())
             }
             None => Err(format!(
