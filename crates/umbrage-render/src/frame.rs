@@ -234,11 +234,16 @@ impl Renderer<'_> {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    load: wgpu::LoadOp::Clear(self.cleared()),
                     store: wgpu::StoreOp::Store,
                 },
             })],
-            depth_stencil_attachment: None,
+            // Read only: the shader reads it too.
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.targets.depth,
+                depth_ops: None,
+                stencil_ops: None,
+            }),
             timestamp_writes: queries.stamps(pass),
             occlusion_query_set: None,
             multiview_mask: None,
