@@ -3,11 +3,15 @@
 //! [`load`] takes what a user types (a path or `builtin:NAME`) and gives a [`Scene`]: flat lists, world space, no GPU.
 
 mod builtin;
+mod defaults;
 mod error;
 mod gltf;
+mod normals;
 mod obj;
 pub mod scene;
 
+pub use builtin::{Builtin, builtins};
+pub use defaults::{add_defaults, add_ground};
 pub use error::SceneError;
 pub use scene::*;
 
