@@ -61,14 +61,14 @@ pub struct SceneArgs {
     /// A .gltf, .glb or .obj file, or builtin:NAME
     ///
     /// Built in are torus, columns, tilt, contact and knots; builtin:columns?scale=10&seed=3 makes one larger and other.
-    #[arg(default_value = "builtin:torus", help_heading = "Scene")]
+    #[arg(default_value = "builtin:torus")]
     pub scene: String,
 
     /// Lay a matte ground under the scene, for its shadow to fall on
     #[arg(long, help_heading = "Scene")]
     pub ground: bool,
 
-    /// A camera of the scene (its number or name), or key=value,... [keys: position, target, up, fov, near, far]
+    /// A camera of the scene (its number or name), or key=value,... of position, target, up, fov, near, far
     ///
     /// Places are x:y:z in metres, fov is the full angle from bottom to top in degrees, near and far are in metres. What is
     /// not said comes from the scene's first camera, or from one that holds the whole scene. A position without target
@@ -86,7 +86,8 @@ pub struct SceneArgs {
     ///   color=r:g:b         linear, or #rrggbb (sRGB)
     ///   candela=N           spot and point lights; lux=N for directional ones.
     ///                       Default: pi lux at the target
-    ///   inner=DEG outer=DEG from axis to full light and to no light. Default 45, inner 0.8 of outer
+    ///   outer=DEG           from the axis to where the cone ends. Default 45
+    ///   inner=DEG           from the axis to where it begins to fade. Default 0.8 outer
     ///   range=M             where the light has faded to nothing. Default: never
     ///   radius=M            of the shining sphere. Default 0: a point
     ///   near=M far=M        planes of the shadow map. Default: fitted to the scene

@@ -170,7 +170,8 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
 pub fn color(text: &str) -> Result<Vec3, String> {
     let bad = || "write a colour as r:g:b (linear, 0 or more) or #rrggbb (sRGB)".to_owned();
     if let Some(hex) = text.strip_prefix('#') {
-        let digits = u32::from_str_radix(hex, 16).ok().filter(|_| hex.len() == 6).ok_or_else(bad)?;
+        let is_hex = hex.len() == 6 && hex.bytes().all(|b| b.is_ascii_hexdigit());
+        let digits = u32::from_str_radix(hex, 16).ok().filter(|_| is_hex).ok_or_else(bad)?;
         return Ok(Vec3::from(
             [16, 8, 0].map(|shift| linear_from_srgb(((digits >> shift) & 255) as f32 / 255.0)),
         ));
