@@ -300,4 +300,14 @@ mod tests {
     fn the_definitions_are_consistent() {
         Cli::command().debug_assert();
     }
+
+    #[test]
+    fn the_help_names_every_built_in_scene() {
+        let mut command = Cli::command();
+        let render = command.find_subcommand_mut("render").expect("render is a command");
+        let help = render.render_long_help().to_string();
+        for builtin in umbrage_scene::builtins() {
+            assert!(help.contains(builtin.name), "{}", builtin.name);
+        }
+    }
 }

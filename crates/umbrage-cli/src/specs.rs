@@ -299,7 +299,10 @@ pub fn light(text: &str) -> Result<LightSpec, String> {
             "near" => above_zero(&value).map(|v| spec.near_m = Some(v)),
             "far" => above_zero(&value).map(|v| spec.far_m = Some(v)),
             _ if value.is_empty() => Err("name a picture".into()),
-            _ => Ok(spec.cookie = Some(PathBuf::from(value))),
+            _ => {
+                spec.cookie = Some(PathBuf::from(value));
+                Ok(())
+            }
         };
         set.map_err(|e| format!("{key}: {e}"))?;
     }
