@@ -114,15 +114,15 @@ pub struct SceneArgs {
     pub shading: String,
 
     /// Light from everywhere, as a share of the brightest light's, 0 to 1
-    #[arg(long, value_name = "X", default_value_t = 0.08, value_parser = specs::share, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value_t = 0.08, value_parser = specs::share, allow_negative_numbers = true, help_heading = "Picture")]
     pub ambient: f32,
 
     /// Share of the diffuse light that stays in shadow, so that shadows do not look flat, 0 to 1
-    #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, allow_negative_numbers = true, help_heading = "Picture")]
     pub fill: f32,
 
     /// Factor from radiance to picture, or auto: white paper in full light gets 0.75
-    #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, allow_negative_numbers = true, help_heading = "Picture")]
     pub exposure: specs::Exposure,
 
     /// Colour where nothing is drawn: r:g:b (linear) or #rrggbb (sRGB)
