@@ -147,7 +147,7 @@ fn report(
 }
 
 fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
-    let times: Vec<f64> = frames.iter().map(|frame| frame.frame_ms).collect();
+    let times: Vec<f64> = drawn.frames_ms.clone();
     let options = renderer.options();
     let maps = match renderer.map_format() {
         Some(format) => {
