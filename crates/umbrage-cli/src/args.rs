@@ -129,6 +129,11 @@ pub struct SceneArgs {
     #[arg(long, value_name = "COLOR", value_parser = specs::color, help_heading = "Picture")]
     pub background: Option<Vec3>,
 
+    /// Draw every caster into the maps, also floors and walls that can be shown to shadow nothing: to see what leaving
+    /// them out saves. Changes no picture
+    #[arg(long, help_heading = "Machine")]
+    pub all_casters: bool,
+
     /// Use the first graphics adapter whose name contains this; `umbrage doctor` lists them
     #[arg(long, value_name = "NAME", env = "UMBRAGE_ADAPTER", help_heading = "Machine")]
     pub adapter: Option<String>,

@@ -211,6 +211,7 @@ pub fn options(args: &SceneArgs, stage: &Stage, settings: Settings) -> RenderOpt
             Exposure::Factor(factor) => Some(factor),
         },
         background: stage.background.unwrap_or(plain.background),
+        all_casters: args.all_casters,
         ..plain
     }
 }

@@ -8,6 +8,7 @@ pub mod camera;
 pub mod depth;
 pub mod fit;
 pub mod frustum;
+pub mod idle;
 pub mod layout;
 pub mod light;
 pub mod lookup;

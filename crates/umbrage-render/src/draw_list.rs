@@ -3,11 +3,12 @@
 use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use umbrage::core::fit::ShadowView;
-use umbrage::core::{Aabb, Frustum};
-use umbrage_scene::{Scene, is_closed};
+use umbrage::core::idle::flat_caster_is_idle;
+use umbrage::core::{Aabb, Frustum, Light};
+use umbrage_scene::{Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
 #[derive(Clone, Debug)]
@@ -29,6 +30,8 @@ struct Item {
     variant: Variant,
     bounds_world: Aabb,
     closed: bool,
+    /// The plane that it lies in, if it is flat.
+    plane_world: Option<Vec4>,
 }
 
 /// All instances of a scene in drawing order.
@@ -37,25 +40,31 @@ pub struct Items {
     items: Vec<Item>,
 }
 
-/// Which meshes are closed solids; all cores share the work.
-fn closed_meshes(scene: &Scene) -> Vec<bool> {
+/// What the shape of a mesh allows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Shape {
+    closed: bool,
+    plane_object: Option<Vec4>,
+}
+
+/// The shapes of all meshes; all cores share the work.
+fn shapes(scene: &Scene) -> Vec<Shape> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(scene.meshes.len());
     let next = AtomicUsize::new(0);
     let work = || {
-        let mut closed = Vec::new();
+        let mut found = Vec::new();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mesh) = scene.meshes.get(index) else { return closed };
-            if is_closed(mesh) {
-                closed.push(index);
-            }
+            let Some(mesh) = scene.meshes.get(index) else { return found };
+            let plane_object = plane_of(mesh);
+            found.push((index, Shape { closed: plane_object.is_none() && is_closed(mesh), plane_object }));
         }
     };
-    let mut all = vec![false; scene.meshes.len()];
+    let mut all = vec![Shape::default(); scene.meshes.len()];
     std::thread::scope(|scope| {
         let running: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        for index in running.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
-            all[index] = true;
+        for (index, shape) in running.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
+            all[index] = shape;
         }
     });
     all
@@ -64,7 +73,7 @@ fn closed_meshes(scene: &Scene) -> Vec<bool> {
 impl Items {
     /// Sorts a scene's instances by pipeline, material and mesh.
     pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry]) -> Self {
-        let closed = closed_meshes(scene);
+        let shapes = shapes(scene);
         let mut items: Vec<Item> = (0..scene.instances.len())
             .map(|instance| {
                 let placed = &scene.instances[instance];
@@ -75,7 +84,12 @@ impl Items {
                     ..materials[mesh.material].variant
                 };
                 let bounds_world = mesh.bounds.transformed(&placed.world_from_object);
-                Item { instance, variant, bounds_world, closed: closed[placed.mesh] }
+                let Shape { closed, plane_object } = shapes[placed.mesh];
+                // Planes go by the inverse transpose.
+                let plane_world =
+                    plane_object.map(|plane| placed.world_from_object.inverse().transpose() * plane);
+                let plane_world = plane_world.map(|p| p / p.truncate().length()).filter(|p| p.is_finite());
+                Item { instance, variant, bounds_world, closed, plane_world }
             })
             .collect();
         items.sort_by_key(|item| {
@@ -111,13 +125,27 @@ impl Items {
         batches(scene, seen.into_iter().map(|item| (item, false)), instances)
     }
 
-    /// Everything that may throw a shadow in a light's view.
-    pub fn casters(&self, scene: &Scene, view: &ShadowView, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
+    /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing.
+    pub fn casters(
+        &self,
+        scene: &Scene,
+        (light, view): (&Light, &ShadowView),
+        all: bool,
+        instances: &mut Vec<GpuInstance>,
+    ) -> Vec<Batch> {
         let frustum = view.frustum();
         let in_front = |bounds: &Aabb| {
             bounds.corners().iter().all(|p| -view.light_from_world.transform_point3(*p).z > view.near_m)
         };
-        let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world));
+        let whole = self.items.iter().fold(Aabb::EMPTY, |all, item| all.union(&item.bounds_world));
+        let tolerance_m = 1e-6 * whole.size().max_element();
+        let is_idle = |item: &Item| {
+            let others = self.items.iter().filter(|other| other.instance != item.instance);
+            let receivers = others.map(|other| other.bounds_world);
+            item.plane_world.is_some_and(|plane| flat_caster_is_idle(light, plane, receivers, tolerance_m))
+        };
+        let seen =
+            self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && (all || !is_idle(item)));
         batches(scene, seen.map(|item| (item, item.closed && in_front(&item.bounds_world))), instances)
     }
 }

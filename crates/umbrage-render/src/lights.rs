@@ -21,6 +21,8 @@ pub struct Lights {
     pub gpu_views: Vec<GpuView>,
     /// The view of each map, in the order of the layers.
     pub views: Vec<ShadowView>,
+    /// The light of each map.
+    pub light_of_view: Vec<Light>,
     /// Index into `views` of each light.
     pub view_of_light: Vec<Option<usize>>,
     /// Images of the slides, in the order of their layers.
@@ -87,6 +89,7 @@ impl Lights {
             lights: Vec::new(),
             gpu_views: Vec::new(),
             views: Vec::new(),
+            light_of_view: Vec::new(),
             view_of_light: Vec::new(),
             slides: Vec::new(),
             warnings: Vec::new(),
@@ -125,6 +128,7 @@ impl Lights {
                     lookup_bias_depth(settings),
                 ));
                 made.views.push(view);
+                made.light_of_view.push(*light);
             }
         }
         Ok(made)

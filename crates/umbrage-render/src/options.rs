@@ -49,6 +49,11 @@ impl View {
         }
     }
 
+    /// Does it show what the map holds?
+    pub fn shows_map(self) -> bool {
+        matches!(self, Self::Depth | Self::Projected)
+    }
+
     /// Does it need the map itself, and so a light that has one?
     pub fn needs_map(self) -> bool {
         matches!(self, Self::Light | Self::Depth | Self::Distance | Self::Projected)
@@ -78,6 +83,9 @@ pub struct RenderOptions {
     pub exposure: Option<f32>,
     /// Linear RGB where nothing is drawn.
     pub background: Vec3,
+    /// Draw every caster into the maps, also those that can be shown to shadow nothing. Costs time and changes no
+    /// picture but those of the maps themselves, which always have them all. Default false.
+    pub all_casters: bool,
 }
 
 impl RenderOptions {
@@ -94,6 +102,7 @@ impl RenderOptions {
             fill: 0.1,
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
+            all_casters: false,
         }
     }
 }

@@ -105,8 +105,13 @@ impl<'a> Renderer<'a> {
         let mut instances = Vec::new();
         let solid = items.solid(scene, &frustum, &mut instances);
         let blended = items.blended(scene, &frustum, eye.position, &mut instances);
-        let casters: Vec<_> =
-            lights.views.iter().map(|view| items.casters(scene, view, &mut instances)).collect();
+        let all_casters = options.all_casters || options.view.shows_map();
+        let casters: Vec<_> = lights
+            .light_of_view
+            .iter()
+            .zip(&lights.views)
+            .map(|of| items.casters(scene, of, all_casters, &mut instances))
+            .collect();
         let shadows = make_shadows(gpu, &options, &lights, casters, &caster_layout)?;
 
         let needs = shader_needs(scene, &options, &lights);

@@ -177,6 +177,31 @@ fn mirrored_and_plain_closed_casters_throw_mirrored_shadows() {
     assert!(shadowed > 1000, "only {shadowed} pixels are in shadow");
 }
 
+/// Floors and walls that nothing lies behind are not drawn into the map; V must not know. A few
+/// pixels may become lighter: those where the floor shadowed itself.
+#[test]
+fn leaving_out_idle_casters_changes_no_picture() {
+    let Some(gpu) = gpu() else { return };
+    for name in ["torus", "columns", "contact"] {
+        let scene = builtin(name);
+        let shot = |all_casters| {
+            let settings = settings("linear", &[("map_size", "512")]);
+            let view = View::Visibility;
+            shoot_with(
+                &gpu,
+                &scene,
+                SIDE,
+                RenderOptions { view, all_casters, ..RenderOptions::new(settings) },
+            )
+        };
+        let (all, needed) = (shot(true), shot(false));
+        let darker = all.v.iter().zip(&needed.v).filter(|(all, needed)| *needed < *all).count();
+        assert_eq!(darker, 0, "{name}: a caster less made {darker} pixels darker");
+        let lighter = all.v.iter().zip(&needed.v).filter(|(all, needed)| **needed > **all + 0.05).count();
+        assert!(lighter < 30, "{name}: {lighter} pixels are lit that were not");
+    }
+}
+
 #[test]
 fn the_comparison_sees_one_altered_pixel() {
     let plain = vec![100u8; 4 * 64];

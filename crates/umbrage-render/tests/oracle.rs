@@ -8,7 +8,7 @@ use common::{gpu, settings, shoot};
 use umbrage_render::View;
 use umbrage_scene::Scene;
 
-const SIDE: u32 = 96;
+const SIDE: u32 = 160;
 /// A map this fine has texels below a pixel in these pictures, so that only the edge itself may be wrong.
 const MAP: (&str, &str) = ("map_size", "2048");
 

@@ -7,6 +7,7 @@ mod check;
 mod closed;
 mod defaults;
 mod error;
+mod flat;
 mod gltf;
 mod normals;
 mod obj;
@@ -17,6 +18,7 @@ pub use builtin::{Builtin, builtins};
 pub use closed::is_closed;
 pub use defaults::{add_defaults, add_ground};
 pub use error::SceneError;
+pub use flat::plane_of;
 pub use scene::*;
 
 /// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file.
