@@ -1,0 +1,302 @@
+//! Every command and option. The parser, the help texts, the completions and the man pages are made from these.
+
+use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use glam::{UVec2, Vec3};
+use std::path::PathBuf;
+use umbrage_render::View;
+use umbrage_render::umbrage::core::technique::{DEFAULT, TECHNIQUES};
+
+/// Real-time shadows: draw a scene with any technique, see what it does and what it costs.
+#[derive(Debug, Parser)]
+#[command(
+    name = "umbrage",
+    version,
+    subcommand_required = true,
+    after_help = "Start with `umbrage render`: it draws the built-in scene into umbrage.png.\n\
+                  `umbrage doctor` says what this machine can do and what is missing.\n\
+                  Exit status: 0 done, 1 failed, 2 wrong use."
+)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What the command can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw one picture of a scene
+    Render(Box<RenderArgs>),
+    /// Measure what techniques cost, side by side in one process
+    Bench(Box<BenchArgs>),
+    /// List the techniques, their choices and parameters
+    Techniques(TechniquesArgs),
+    /// Print the passes of a technique: targets, states, what is drawn
+    Passes(PassesArgs),
+    /// Print shader modules, ready to be pasted into your own renderer
+    Wgsl(WgslArgs),
+    /// Say what this machine's graphics adapters can do, and what is missing
+    Doctor(DoctorArgs),
+    /// Print the completions of a shell
+    ///
+    /// For example: umbrage completions bash > ~/.local/share/bash-completion/completions/umbrage
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the man page, or that of one command, as roff
+    ///
+    /// For example: umbrage man render | man -l -
+    Man {
+        /// Which command's page
+        command: Option<String>,
+    },
+}
+
+/// Which scene, seen how, lit by what. Shared by all commands that draw.
+#[derive(Args, Debug)]
+pub struct SceneArgs {
+    /// A .gltf, .glb or .obj file, or builtin:NAME
+    ///
+    /// Built in are torus, columns, tilt, contact and knots; builtin:columns?scale=10&seed=3 makes one larger and other.
+    #[arg(default_value = "builtin:torus", help_heading = "Scene")]
+    pub scene: String,
+
+    /// Lay a matte ground under the scene, for its shadow to fall on
+    #[arg(long, help_heading = "Scene")]
+    pub ground: bool,
+
+    /// A camera of the scene (its number or name), or key=value,... [keys: position, target, up, fov, near, far]
+    ///
+    /// Places are x:y:z in metres, fov is the full angle from bottom to top in degrees, near and far are in metres. What is
+    /// not said comes from the scene's first camera, or from one that holds the whole scene. A position without target
+    /// looks at the middle of the scene.
+    #[arg(long, value_name = "SPEC", value_parser = specs::camera, help_heading = "Scene")]
+    pub camera: Option<CameraChoice>,
+
+    /// A light, key=value,...; replaces the scene's lights, may be given several times
+    ///
+    /// Without keys that say otherwise it is a white spot light that aims at the middle of the scene.
+    ///
+    ///   kind=spot|point|directional
+    ///   position=x:y:z      metres
+    ///   target=x:y:z        where it aims; or direction=x:y:z, where its light travels to
+    ///   color=r:g:b         linear, or #rrggbb (sRGB)
+    ///   candela=N           spot and point lights; lux=N for directional ones.
+    ///                       Default: pi lux at the target
+    ///   inner=DEG outer=DEG from axis to full light and to no light. Default 45, inner 0.8 of outer
+    ///   range=M             where the light has faded to nothing. Default: never
+    ///   radius=M            of the shining sphere. Default 0: a point
+    ///   near=M far=M        planes of the shadow map. Default: fitted to the scene
+    ///   cookie=FILE         a slide (png, jpg, webp) in front of a spot light
+    ///
+    /// Quote the whole in PowerShell, and wherever a path holds spaces.
+    #[arg(long, value_name = "SPEC", value_parser = specs::light, help_heading = "Scene", verbatim_doc_comment)]
+    pub light: Vec<LightSpec>,
+
+    /// Lights, camera, size and background of a case of a JSON file of cases, as FILE:CASE
+    #[arg(long, value_name = "FILE:CASE", value_parser = specs::case_ref, conflicts_with = "light", help_heading = "Scene")]
+    pub lights_from: Option<CaseRef>,
+
+    /// Width and height in pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = specs::size, help_heading = "Picture")]
+    pub size: Option<UVec2>,
+
+    /// Samples a pixel: 4 smooths the edges of surfaces (not of shadows)
+    #[arg(long, value_name = "N", default_value = "1", value_parser = samples(), help_heading = "Picture")]
+    pub msaa: u32,
+
+    /// How surfaces answer light: as their material says, or all as ambient, Lambert and Blinn
+    #[arg(long, value_name = "HOW", default_value = "material", value_parser = ["material", "documents"], help_heading = "Picture")]
+    pub shading: String,
+
+    /// Light from everywhere, as a share of the brightest light's, 0 to 1
+    #[arg(long, value_name = "X", default_value_t = 0.08, value_parser = specs::share, help_heading = "Picture")]
+    pub ambient: f32,
+
+    /// Share of the diffuse light that stays in shadow, so that shadows do not look flat, 0 to 1
+    #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, help_heading = "Picture")]
+    pub fill: f32,
+
+    /// Factor from radiance to picture, or auto: white paper in full light gets 0.75
+    #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, help_heading = "Picture")]
+    pub exposure: specs::Exposure,
+
+    /// Colour where nothing is drawn: r:g:b (linear) or #rrggbb (sRGB)
+    #[arg(long, value_name = "COLOR", value_parser = specs::color, help_heading = "Picture")]
+    pub background: Option<Vec3>,
+
+    /// Use the first graphics adapter whose name contains this; `umbrage doctor` lists them
+    #[arg(long, value_name = "NAME", env = "UMBRAGE_ADAPTER", help_heading = "Machine")]
+    pub adapter: Option<String>,
+}
+
+const RENDER_EXAMPLES: &str = "Examples:
+  umbrage render
+      the built-in scene into umbrage.png
+  umbrage render model.glb --ground -o model.png
+      your model on a ground, with its own lights, or a light that suits it
+  umbrage render builtin:torus --technique hard --set map_size=128 -o stairs.png
+      what a coarse map without filter looks like
+  umbrage render builtin:columns --view depth -o map.png
+      the light's map itself: near black, far white
+  umbrage render model.obj --light kind=directional,direction=-1:-2:-1,lux=3 --size 1920x1080 --msaa 4
+      under a sun of your own
+  umbrage render --frames 20 --statistics --json
+      what each pass costs, for a program to read
+
+The picture is always PNG. `umbrage techniques` lists what --technique and --set take.";
+
+/// `umbrage render`
+#[derive(Args, Debug)]
+#[command(after_long_help = RENDER_EXAMPLES, after_help = "`umbrage render --help` has examples and the keys of --light.")]
+pub struct RenderArgs {
+    /// Scene, lights, picture, machine.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// Where the picture goes; a file of that name is replaced
+    #[arg(short, long, value_name = "FILE", default_value = "umbrage.png", help_heading = "Output")]
+    pub output: PathBuf,
+
+    /// How shadows are made
+    #[arg(short, long, value_name = "ID", default_value = DEFAULT, value_parser = technique_ids(&[]), help_heading = "Shadow")]
+    pub technique: String,
+
+    /// Change a choice or parameter of the technique; may be given several times
+    #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
+    pub set: Vec<Pair>,
+
+    /// What the picture shows
+    #[arg(long, value_name = "VIEW", default_value = "final", value_parser = view_ids(), help_heading = "Picture")]
+    pub view: String,
+
+    /// Which light the views of one light show, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Picture")]
+    pub light_index: usize,
+
+    /// Draw N frames; with more than one, the first (which warms up) is left out of the median
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Output")]
+    pub frames: u32,
+
+    /// Let the GPU count vertices and fragments of each pass
+    #[arg(long, help_heading = "Output")]
+    pub statistics: bool,
+
+    /// Print one JSON object with everything that is known about the picture
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "json", help_heading = "Output")]
+    pub quiet: bool,
+}
+
+const BENCH_EXAMPLES: &str = "Examples:
+  umbrage bench
+  umbrage bench model.glb --techniques all --frames 60
+  umbrage bench --lights-from cases.json:A knots.glb --techniques hard,linear --json
+
+Frames of the techniques take turns, so that what else the machine does meets all of them alike. `shadow cost` is the
+median minus that of the unshadowed frame. Vertex and fragment runs are counted in a frame of their own.";
+
+/// `umbrage bench`
+#[derive(Args, Debug)]
+#[command(after_long_help = BENCH_EXAMPLES)]
+pub struct BenchArgs {
+    /// Scene, lights, picture, machine.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// Which techniques, by commas, or all; unshadowed is always measured
+    #[arg(short, long, value_name = "ID,...", default_value = "unshadowed,linear", value_delimiter = ',',
+          value_parser = technique_ids(&["all"]), help_heading = "Shadow")]
+    pub techniques: Vec<String>,
+
+    /// Change a choice or parameter in every technique but unshadowed; all of them must have it
+    #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
+    pub set: Vec<Pair>,
+
+    /// Measured frames of each technique, after one that warms up
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Output")]
+    pub frames: u32,
+
+    /// Print one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+}
+
+/// `umbrage techniques`
+#[derive(Args, Debug)]
+pub struct TechniquesArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+
+    /// Print every combination of the four choices of a map, and whether it is valid
+    #[arg(long)]
+    pub matrix: bool,
+}
+
+/// `umbrage passes`
+#[derive(Args, Debug)]
+pub struct PassesArgs {
+    /// Which technique
+    #[arg(value_name = "ID", value_parser = technique_ids(&[]))]
+    pub technique: String,
+
+    /// Change a choice or parameter of the technique; may be given several times
+    #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair)]
+    pub set: Vec<Pair>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `umbrage wgsl`
+#[derive(Args, Debug)]
+#[command(after_help = "Example: umbrage wgsl filter/linear light > shadow.wgsl")]
+pub struct WgslArgs {
+    /// Which modules; what they need comes with them. Without any: the list
+    #[arg(value_name = "MODULE")]
+    pub modules: Vec<String>,
+}
+
+/// `umbrage doctor`
+#[derive(Args, Debug)]
+pub struct DoctorArgs {
+    /// Look at the first adapter whose name contains this
+    #[arg(long, value_name = "NAME", env = "UMBRAGE_ADAPTER")]
+    pub adapter: Option<String>,
+
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn technique_ids(more: &[&'static str]) -> PossibleValuesParser {
+    let more = more.iter().map(|id| PossibleValue::new(*id).help("every technique"));
+    PossibleValuesParser::new(TECHNIQUES.iter().map(|t| PossibleValue::new(t.id).help(t.summary)).chain(more))
+}
+
+fn view_ids() -> PossibleValuesParser {
+    PossibleValuesParser::new(View::ALL.map(|view| PossibleValue::new(view.id()).help(view.summary())))
+}
+
+fn samples() -> impl TypedValueParser<Value = u32> {
+    PossibleValuesParser::new(["1", "4"]).map(|text| if text == "4" { 4 } else { 1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+}

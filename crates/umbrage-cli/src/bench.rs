@@ -1,0 +1,249 @@
+//! `umbrage bench`: what techniques cost, frame by frame in turns.
+
+use crate::args::BenchArgs;
+use crate::fault::{Fault, say, tell};
+use crate::json::{self, Machine, MapFormat, PassJson, SceneJson};
+use crate::setup::{self, Stage};
+use crate::text;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::io::{IsTerminal, Write};
+use umbrage_render::umbrage::core::technique::{Settings, TECHNIQUES};
+use umbrage_render::{Gpu, RenderOptions, Renderer};
+
+const UNSHADOWED: &str = "unshadowed";
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    machine: Machine,
+    scene: SceneJson,
+    size: [u32; 2],
+    msaa: u32,
+    frames: u32,
+    techniques: Vec<Row>,
+    notes: Vec<String>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    technique: &'static str,
+    params: Map<String, Value>,
+    map_format: Option<MapFormat>,
+    frame_ms: f64,
+    min_ms: f64,
+    max_ms: f64,
+    /// Median minus that of the unshadowed frame.
+    shadow_cost_ms: f64,
+    gpu_ms: Option<f64>,
+    draws: u64,
+    triangles: u64,
+    vertices: u64,
+    vertex_runs: Option<u64>,
+    fragment_runs: Option<u64>,
+    shadow_memory_bytes: u64,
+    passes: Vec<PassJson>,
+    frames_ms: Vec<f64>,
+}
+
+/// Measures and reports.
+///
+/// # Errors
+/// As `umbrage render`.
+pub fn run(args: &BenchArgs) -> Result<(), Fault> {
+    let ids = techniques(&args.techniques);
+    all_settings(&ids, args, None)?;
+    let stage = setup::stage(&args.scene)?;
+    let settings = all_settings(&ids, args, stage.map_size)?;
+    let gpu = Gpu::new(args.scene.adapter.as_deref())?;
+    let renderers = settings
+        .iter()
+        .map(|settings| renderer(args, &stage, &gpu, settings, false))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut warnings = stage.scene.warnings.clone();
+    for warning in renderers.iter().flat_map(|renderer| renderer.warnings()) {
+        if !warnings.contains(warning) {
+            warnings.push(warning.clone());
+        }
+    }
+    stage.notes.iter().for_each(|note| tell("note", note));
+    warnings.iter().for_each(|warning| tell("warning", warning));
+
+    let frames_ms = measure(&renderers, args.frames)?;
+    let memory: Vec<(u64, Option<MapFormat>)> =
+        renderers.iter().map(|r| (r.shadow_memory_bytes(), MapFormat::of_renderer(r))).collect();
+    drop(renderers);
+    let mut rows = Vec::new();
+    for ((settings, frames_ms), (bytes, format)) in settings.iter().zip(frames_ms).zip(memory) {
+        // Counting slows the frame, so it is done in one of its own.
+        let passes = count(args, &stage, &gpu, settings)?;
+        rows.push(row(settings, frames_ms, bytes, format, passes));
+    }
+    gpu.check()?;
+    let bare = rows.iter().find(|row| row.technique == UNSHADOWED).map_or(0.0, |row| row.frame_ms);
+    rows.iter_mut().for_each(|row| row.shadow_cost_ms = row.frame_ms - bare);
+    let report = Report {
+        machine: Machine::of(&gpu.info),
+        scene: SceneJson::of(&stage.scene),
+        size: stage.size.to_array(),
+        msaa: args.scene.msaa,
+        frames: args.frames,
+        techniques: rows,
+        notes: stage.notes,
+        warnings,
+    };
+    if args.json { json::print(&report) } else { say(&describe(&report)) }
+}
+
+/// Unshadowed first, then as asked for, each once.
+fn techniques(asked: &[String]) -> Vec<&str> {
+    let mut ids = vec![UNSHADOWED];
+    for id in asked {
+        let more: Vec<&str> =
+            if id == "all" { TECHNIQUES.iter().map(|t| t.id).collect() } else { vec![id.as_str()] };
+        for id in more {
+            if !ids.contains(&id) {
+                ids.push(id);
+            }
+        }
+    }
+    ids
+}
+
+fn all_settings(ids: &[&str], args: &BenchArgs, map_size: Option<u32>) -> Result<Vec<Settings>, Fault> {
+    // Without a shadow there is nothing to set.
+    ids.iter()
+        .map(|&id| setup::settings(id, if id == UNSHADOWED { &[] } else { &args.set }, map_size))
+        .collect()
+}
+
+fn renderer<'a>(
+    args: &BenchArgs,
+    stage: &Stage,
+    gpu: &'a Gpu,
+    settings: &Settings,
+    statistics: bool,
+) -> Result<Renderer<'a>, Fault> {
+    let options = RenderOptions { statistics, ..setup::options(&args.scene, stage, settings.clone()) };
+    Ok(Renderer::new(gpu, &stage.scene, &stage.camera, options)?)
+}
+
+/// Times of each technique's frames, in turns.
+fn measure(renderers: &[Renderer<'_>], frames: u32) -> Result<Vec<Vec<f64>>, Fault> {
+    let progress = std::io::stderr().is_terminal();
+    for renderer in renderers {
+        renderer.frame()?; // Drivers compile in the first.
+    }
+    let mut times = vec![Vec::with_capacity(frames as usize); renderers.len()];
+    for frame in 0..frames {
+        if progress {
+            let _ = write!(std::io::stderr(), "\rframe {} of {frames}", frame + 1);
+        }
+        for (renderer, times) in renderers.iter().zip(&mut times) {
+            times.push(renderer.frame()?.frame_ms);
+        }
+    }
+    if progress {
+        let _ = write!(std::io::stderr(), "\r\u{1b}[K");
+    }
+    Ok(times)
+}
+
+fn count(args: &BenchArgs, stage: &Stage, gpu: &Gpu, settings: &Settings) -> Result<Vec<PassJson>, Fault> {
+    let renderer = renderer(args, stage, gpu, settings, true)?;
+    renderer.frame()?;
+    Ok(renderer.frame()?.passes.iter().map(PassJson::from).collect())
+}
+
+fn row(
+    settings: &Settings,
+    frames_ms: Vec<f64>,
+    shadow_memory_bytes: u64,
+    map_format: Option<MapFormat>,
+    passes: Vec<PassJson>,
+) -> Row {
+    let sum = |of: fn(&PassJson) -> u64| passes.iter().map(of).sum();
+    let counted = |of: fn(&json::StatisticsJson) -> u64| {
+        passes.iter().map(|pass| pass.statistics.as_ref().map(of)).sum::<Option<u64>>()
+    };
+    Row {
+        technique: settings.technique.id,
+        params: json::params(settings),
+        map_format,
+        frame_ms: json::median(&frames_ms),
+        min_ms: frames_ms.iter().copied().fold(f64::MAX, f64::min),
+        max_ms: frames_ms.iter().copied().fold(0.0, f64::max),
+        shadow_cost_ms: 0.0,
+        gpu_ms: passes.iter().map(|pass| pass.gpu_ms).sum(),
+        draws: sum(|pass| pass.draws),
+        triangles: sum(|pass| pass.triangles),
+        vertices: sum(|pass| pass.vertices),
+        vertex_runs: counted(|s| s.vertex_runs),
+        fragment_runs: counted(|s| s.fragment_runs),
+        shadow_memory_bytes,
+        passes,
+        frames_ms,
+    }
+}
+
+fn describe(report: &Report) -> String {
+    let head = [
+        "technique",
+        "median ms",
+        "min..max",
+        "cost ms",
+        "passes",
+        "draws",
+        "triangles",
+        "vertices",
+        "vertex runs",
+        "fragment runs",
+        "map memory",
+    ];
+    let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
+    let runs = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), text::count);
+    for row in &report.techniques {
+        rows.push(vec![
+            row.technique.to_owned(),
+            format!("{:.2}", row.frame_ms),
+            format!("{:.2}..{:.2}", row.min_ms, row.max_ms),
+            if row.technique == UNSHADOWED { "-".to_owned() } else { format!("{:.2}", row.shadow_cost_ms) },
+            row.passes.len().to_string(),
+            text::count(row.draws),
+            text::count(row.triangles),
+            text::count(row.vertices),
+            runs(row.vertex_runs),
+            runs(row.fragment_runs),
+            text::bytes(row.shadow_memory_bytes),
+        ]);
+    }
+    format!(
+        "{}, {} ({})\n{}: {} triangles, {}x{} pixels, {} frames of each\n\n{}",
+        report.machine.adapter,
+        report.machine.driver,
+        report.machine.backend,
+        report.scene.name,
+        text::count(report.scene.triangles),
+        report.size[0],
+        report.size[1],
+        report.frames,
+        text::table(&rows)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unshadowed_is_always_first_and_none_is_twice() {
+        let asked = |ids: &[&str]| -> Vec<String> {
+            let ids: Vec<String> = ids.iter().map(|id| (*id).to_owned()).collect();
+            techniques(&ids).iter().map(|id| (*id).to_owned()).collect()
+        };
+        assert_eq!(asked(&["linear", "linear"]), ["unshadowed", "linear"]);
+        assert_eq!(asked(&["hard", "unshadowed"]), ["unshadowed", "hard"]);
+        assert_eq!(asked(&["all", "hard"]).len(), TECHNIQUES.len());
+    }
+}

@@ -1,0 +1,277 @@
+//! What `--json` prints: one object, every number finite.
+
+use crate::fault::{Fault, say};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use umbrage_render::umbrage::ChosenFormat;
+use umbrage_render::umbrage::core::technique::{Param, ParamDefault, Settings, Source};
+use umbrage_render::{PassReport, Renderer};
+use umbrage_scene::Scene;
+
+/// A picture and all that is known of it.
+#[derive(Debug, Serialize)]
+pub struct RenderJson {
+    #[serde(flatten)]
+    pub machine: Machine,
+    pub scene: SceneJson,
+    pub technique: &'static str,
+    pub params: Map<String, Value>,
+    pub map_format: Option<MapFormat>,
+    pub size: [u32; 2],
+    pub msaa: u32,
+    pub view: &'static str,
+    pub light_index: usize,
+    pub passes: Vec<PassJson>,
+    pub frame_ms: f64,
+    pub frames_ms: Vec<f64>,
+    pub shadow_memory_bytes: u64,
+    pub exposure: f64,
+    pub timings: Timings,
+    pub output: String,
+    pub notes: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+/// What drew it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Machine {
+    pub adapter: String,
+    pub driver: String,
+    pub backend: String,
+}
+
+/// What was drawn.
+#[derive(Debug, Serialize)]
+pub struct SceneJson {
+    pub name: String,
+    pub triangles: u64,
+    pub instances: usize,
+    pub meshes: usize,
+    pub materials: usize,
+    pub images: usize,
+    pub lights: usize,
+    pub cameras: usize,
+    pub bounds: BoundsJson,
+}
+
+/// Metres, world space.
+#[derive(Debug, Serialize)]
+pub struct BoundsJson {
+    pub min: [f64; 3],
+    pub max: [f64; 3],
+}
+
+/// The depth format of the maps, and why.
+#[derive(Debug, Serialize)]
+pub struct MapFormat {
+    pub storage: &'static str,
+    pub format: String,
+    pub why: String,
+}
+
+/// What a pass did.
+#[derive(Debug, Serialize)]
+pub struct PassJson {
+    pub name: String,
+    pub draws: u64,
+    pub instances: u64,
+    pub triangles: u64,
+    pub vertices: u64,
+    pub gpu_ms: Option<f64>,
+    pub statistics: Option<StatisticsJson>,
+}
+
+/// What the GPU counted.
+#[derive(Debug, Serialize)]
+pub struct StatisticsJson {
+    pub vertex_runs: u64,
+    pub clipped_triangles: u64,
+    pub fragment_runs: u64,
+}
+
+/// Where the time went, milliseconds.
+#[derive(Debug, Serialize)]
+pub struct Timings {
+    pub load_ms: f64,
+    pub setup_ms: f64,
+    pub frame_ms: f64,
+    pub write_ms: f64,
+}
+
+/// A parameter as the table has it.
+#[derive(Debug, Serialize)]
+pub struct ParamJson {
+    pub name: &'static str,
+    pub label: &'static str,
+    pub unit: &'static str,
+    pub min: f64,
+    pub max: f64,
+    pub step: f64,
+    /// Absent where it follows from the combination.
+    pub default: Option<f64>,
+    pub default_rule: Option<&'static str>,
+    pub help: &'static str,
+    pub cost: &'static str,
+}
+
+/// Where something was published.
+#[derive(Debug, Serialize)]
+pub struct SourceJson {
+    pub paper: &'static str,
+    pub year: u16,
+}
+
+/// The shortest decimal that means the same number; never infinite, which JSON cannot say.
+pub fn decimal(x: f32) -> f64 {
+    let x = if x.is_nan() { 0.0 } else { x.clamp(f32::MIN, f32::MAX) };
+    x.to_string().parse().unwrap_or(f64::from(x))
+}
+
+impl Machine {
+    /// Names it.
+    pub fn of(info: &wgpu::AdapterInfo) -> Self {
+        let driver = [info.driver.as_str(), info.driver_info.as_str()];
+        Self {
+            adapter: info.name.clone(),
+            driver: driver.iter().filter(|s| !s.is_empty()).copied().collect::<Vec<_>>().join(" "),
+            backend: info.backend.to_string(),
+        }
+    }
+}
+
+impl SceneJson {
+    /// Counts it.
+    pub fn of(scene: &Scene) -> Self {
+        let bounds = scene.bounds();
+        Self {
+            name: scene.name.clone(),
+            triangles: scene.triangles(),
+            instances: scene.instances.len(),
+            meshes: scene.meshes.len(),
+            materials: scene.materials.len(),
+            images: scene.images.len(),
+            lights: scene.lights.len(),
+            cameras: scene.cameras.len(),
+            bounds: BoundsJson {
+                min: bounds.min.to_array().map(decimal),
+                max: bounds.max.to_array().map(decimal),
+            },
+        }
+    }
+}
+
+impl MapFormat {
+    /// What was settled on.
+    pub fn of(chosen: &ChosenFormat) -> Self {
+        Self {
+            storage: chosen.storage.row().id,
+            format: format!("{:?}", chosen.format),
+            why: chosen.why.clone(),
+        }
+    }
+
+    /// Of a renderer; `None` without maps.
+    pub fn of_renderer(renderer: &Renderer<'_>) -> Option<Self> {
+        renderer.map_format().map(Self::of)
+    }
+}
+
+impl From<&PassReport> for PassJson {
+    fn from(pass: &PassReport) -> Self {
+        Self {
+            name: pass.name.clone(),
+            draws: pass.work.draws,
+            instances: pass.work.instances,
+            triangles: pass.work.triangles,
+            vertices: pass.work.vertices,
+            gpu_ms: pass.gpu_ms,
+            statistics: pass.statistics.map(|s| StatisticsJson {
+                vertex_runs: s.vertex_runs,
+                clipped_triangles: s.clipped_triangles,
+                fragment_runs: s.fragment_runs,
+            }),
+        }
+    }
+}
+
+impl From<&Param> for ParamJson {
+    fn from(param: &Param) -> Self {
+        let (default, default_rule) = match param.default {
+            ParamDefault::Fixed(value) => (Some(decimal(value)), None),
+            ParamDefault::Derived { rule, .. } => (None, Some(rule)),
+        };
+        Self {
+            name: param.name,
+            label: param.label,
+            unit: param.unit,
+            min: decimal(param.min),
+            max: decimal(param.max),
+            step: decimal(param.step),
+            default,
+            default_rule,
+            help: param.help,
+            cost: param.cost,
+        }
+    }
+}
+
+impl From<Source> for SourceJson {
+    fn from(source: Source) -> Self {
+        Self { paper: source.paper, year: source.year }
+    }
+}
+
+/// Choices and parameters by name.
+pub fn params(settings: &Settings) -> Map<String, Value> {
+    let mut map = Map::new();
+    if let Some(combination) = settings.combination {
+        for (key, row) in crate::techniques::CHOICES.iter().zip(combination.rows()) {
+            map.insert((*key).to_owned(), row.id.into());
+        }
+    }
+    for param in settings.params() {
+        map.insert(param.name.to_owned(), settings.value(param.name).map(decimal).into());
+    }
+    map
+}
+
+/// The middle of a list; the mean of the two in the middle of an even one. 0 of an empty one.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => sorted[n / 2],
+        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
+    }
+}
+
+/// Prints one object.
+///
+/// # Errors
+/// As [`say`].
+pub fn print(value: &impl Serialize) -> Result<(), Fault> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Fault::Failed(e.to_string()))?;
+    say(&text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_finite() {
+        assert_eq!(decimal(0.1).to_string(), "0.1");
+        for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert!(decimal(odd).is_finite());
+        }
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(
+            [median(&[]), median(&[3.0]), median(&[3.0, 1.0, 2.0]), median(&[4.0, 1.0])],
+            [0.0, 3.0, 2.0, 2.5]
+        );
+    }
+}

@@ -1,0 +1,80 @@
+//! The `umbrage` command. Exit status: 0 done, 1 failed, 2 wrong use.
+
+mod args;
+mod bench;
+mod cases;
+mod doctor;
+mod fault;
+mod generate;
+mod json;
+mod passes;
+mod render;
+mod setup;
+mod specs;
+mod techniques;
+mod text;
+mod wgsl;
+
+use args::{Cli, Command};
+use clap::Parser;
+use fault::{Fault, one_line};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let done = match Cli::try_parse() {
+        Ok(cli) => run(cli.command),
+        Err(error) => wrong_use(&error),
+    };
+    match done {
+        // Nobody reads on: `umbrage techniques | head -1` is no failure.
+        Ok(()) | Err(Fault::NobodyReads) => ExitCode::SUCCESS,
+        Err(Fault::Failed(message)) => {
+            fault::tell("umbrage", &message);
+            ExitCode::from(1)
+        }
+        Err(Fault::WrongUse(message)) => {
+            fault::tell("umbrage", &message);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Fault> {
+    match command {
+        Command::Render(args) => render::run(&args),
+        Command::Bench(args) => bench::run(&args),
+        Command::Techniques(args) => techniques::run(&args),
+        Command::Passes(args) => passes::run(&args),
+        Command::Wgsl(args) => wgsl::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Completions { shell } => generate::completions(shell),
+        Command::Man { command } => generate::man(command.as_deref()),
+    }
+}
+
+/// Help and version are what was asked for; all else becomes one line.
+fn wrong_use(error: &clap::Error) -> Result<(), Fault> {
+    use clap::error::ErrorKind;
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // On a terminal with its colours, elsewhere without.
+            error.print().map_err(Fault::from_stdout)
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            Err(Fault::WrongUse(
+                "name a command, for example `umbrage render`; `umbrage --help` lists them".into(),
+            ))
+        }
+        _ => {
+            let text = error.render().to_string();
+            let useful: Vec<String> = text
+                .lines()
+                .map(one_line)
+                .filter(|line| !line.is_empty())
+                .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"))
+                .collect();
+            let message = useful.join("; ");
+            Err(Fault::WrongUse(message.trim_start_matches("error: ").to_owned()))
+        }
+    }
+}

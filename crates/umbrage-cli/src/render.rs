@@ -1,0 +1,169 @@
+//! `umbrage render`: one picture.
+
+use crate::args::RenderArgs;
+use crate::fault::{Fault, say, tell};
+use crate::json::{self, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
+use crate::setup::{self, Stage};
+use crate::text;
+use std::path::Path;
+use std::time::Instant;
+use umbrage_render::picture::write_png;
+use umbrage_render::{FrameReport, Gpu, RenderOptions, Renderer, View};
+
+/// Draws it, writes it, says what it is.
+///
+/// # Errors
+/// Wrong use before anything is loaded, failures as they come. No picture is left behind.
+pub fn run(args: &RenderArgs) -> Result<(), Fault> {
+    setup::settings(&args.technique, &args.set, None)?;
+    let view = View::ALL.into_iter().find(|view| view.id() == args.view).unwrap_or(View::Final);
+    check_output(&args.output)?;
+    let stage = setup::stage(&args.scene)?;
+    let settings = setup::settings(&args.technique, &args.set, stage.map_size)?;
+    let options = RenderOptions {
+        view,
+        shown_light: args.light_index,
+        statistics: args.statistics,
+        ..setup::options(&args.scene, &stage, settings)
+    };
+
+    let start = Instant::now();
+    let gpu = Gpu::new(args.scene.adapter.as_deref())?;
+    let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
+    let setup_ms = ms_since(start);
+    let frames = draw(&renderer, args.frames)?;
+    let pixels = renderer.picture()?;
+    gpu.check()?;
+
+    let start = Instant::now();
+    write_png(&args.output, stage.size.x, stage.size.y, &pixels).map_err(Fault::Failed)?;
+    let write_ms = ms_since(start);
+    let warnings: Vec<String> = stage.scene.warnings.iter().chain(renderer.warnings()).cloned().collect();
+    if !args.quiet {
+        stage.notes.iter().for_each(|note| tell("note", note));
+        warnings.iter().for_each(|warning| tell("warning", warning));
+    }
+    if args.json {
+        let report = report(args, &stage, &gpu, &renderer, &frames, warnings, [setup_ms, write_ms]);
+        return json::print(&report);
+    }
+    if args.quiet { Ok(()) } else { say(&summary(args, &stage, &gpu, &renderer, &frames)) }
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// The frames; the first is dropped when there are several, because drivers compile then.
+fn draw(renderer: &Renderer<'_>, count: u32) -> Result<Vec<FrameReport>, Fault> {
+    let mut frames = (0..count).map(|_| renderer.frame()).collect::<Result<Vec<_>, _>>()?;
+    if frames.len() > 1 {
+        frames.remove(0);
+    }
+    Ok(frames)
+}
+
+/// Can the picture be written there? Asked before any work.
+fn check_output(path: &Path) -> Result<(), Fault> {
+    let failed = |reason: &str| Fault::Failed(format!("cannot write {}: {reason}", path.display()));
+    if path.is_dir() {
+        return Err(failed("it is a folder; name a .png file in it"));
+    }
+    if path.file_name().is_none() {
+        return Err(Fault::WrongUse(format!("--output: `{}` names no file", path.display())));
+    }
+    if let Some(ending) = path.extension().filter(|ending| !ending.eq_ignore_ascii_case("png")) {
+        let ending = ending.to_string_lossy();
+        return Err(Fault::WrongUse(format!(
+            "--output: pictures are PNG; let the name end in .png, not .{ending}"
+        )));
+    }
+    if path.exists() && !path.is_file() {
+        return Ok(()); // A device or a pipe.
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(failed("its folder does not exist, make it or name another"));
+    }
+    let probe = folder.join(format!(".umbrage.{}.probe", std::process::id()));
+    std::fs::write(&probe, []).and_then(|()| std::fs::remove_file(&probe)).map_err(|e| {
+        let _ = std::fs::remove_file(&probe);
+        failed(&format!("{e}; choose a folder that you may write to"))
+    })
+}
+
+fn report(
+    args: &RenderArgs,
+    stage: &Stage,
+    gpu: &Gpu,
+    renderer: &Renderer<'_>,
+    frames: &[FrameReport],
+    warnings: Vec<String>,
+    [setup_ms, write_ms]: [f64; 2],
+) -> RenderJson {
+    let options = renderer.options();
+    let frames_ms: Vec<f64> = frames.iter().map(|frame| frame.frame_ms).collect();
+    let frame_ms = json::median(&frames_ms);
+    let mut passes: Vec<PassJson> =
+        frames.last().map(|frame| frame.passes.iter().map(PassJson::from).collect()).unwrap_or_default();
+    for (index, pass) in passes.iter_mut().enumerate() {
+        let times: Option<Vec<f64>> = frames.iter().map(|frame| frame.passes[index].gpu_ms).collect();
+        pass.gpu_ms = times.map(|times| json::median(&times));
+    }
+    RenderJson {
+        machine: Machine::of(&gpu.info),
+        scene: SceneJson::of(&stage.scene),
+        technique: options.settings.technique.id,
+        params: json::params(&options.settings),
+        map_format: MapFormat::of_renderer(renderer),
+        size: options.size.to_array(),
+        msaa: options.samples,
+        view: options.view.id(),
+        light_index: options.shown_light,
+        passes,
+        frame_ms,
+        frames_ms,
+        shadow_memory_bytes: renderer.shadow_memory_bytes(),
+        exposure: json::decimal(renderer.exposure()),
+        timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
+        output: args.output.display().to_string(),
+        notes: stage.notes.clone(),
+        warnings,
+    }
+}
+
+fn summary(
+    args: &RenderArgs,
+    stage: &Stage,
+    gpu: &Gpu,
+    renderer: &Renderer<'_>,
+    frames: &[FrameReport],
+) -> String {
+    let times: Vec<f64> = frames.iter().map(|frame| frame.frame_ms).collect();
+    let options = renderer.options();
+    let maps = match renderer.map_format() {
+        Some(format) => {
+            let size = options.settings.map_size_texel();
+            format!(
+                " ({} map{} {size}x{size} {})",
+                renderer.views().len(),
+                if renderer.views().len() == 1 { "" } else { "s" },
+                format.storage.row().id
+            )
+        }
+        None => String::new(),
+    };
+    let median = if times.len() > 1 { format!("median of {} frames ", times.len()) } else { String::new() };
+    format!(
+        "{}: {} triangles, {}{maps}, on {}: {median}{:.2} ms\n{} view of {}x{} pixels written to {}\n",
+        stage.scene.name,
+        text::count(stage.scene.triangles()),
+        options.settings.technique.id,
+        gpu.info.name,
+        json::median(&times),
+        options.view.id(),
+        stage.size.x,
+        stage.size.y,
+        args.output.display()
+    )
+}
