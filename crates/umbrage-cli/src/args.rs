@@ -61,14 +61,14 @@ pub struct SceneArgs {
     /// A .gltf, .glb or .obj file, or builtin:NAME
     ///
     /// Built in are torus, columns, tilt, contact and knots; builtin:columns?scale=10&seed=3 makes one larger and other.
-    #[arg(default_value = "builtin:torus", help_heading = "Scene")]
+    #[arg(default_value = "builtin:torus")]
     pub scene: String,
 
     /// Lay a matte ground under the scene, for its shadow to fall on
     #[arg(long, help_heading = "Scene")]
     pub ground: bool,
 
-    /// A camera of the scene (its number or name), or key=value,... [keys: position, target, up, fov, near, far]
+    /// A camera of the scene (its number or name), or key=value,... of position, target, up, fov, near, far
     ///
     /// Places are x:y:z in metres, fov is the full angle from bottom to top in degrees, near and far are in metres. What is
     /// not said comes from the scene's first camera, or from one that holds the whole scene. A position without target
@@ -86,7 +86,8 @@ pub struct SceneArgs {
     ///   color=r:g:b         linear, or #rrggbb (sRGB)
     ///   candela=N           spot and point lights; lux=N for directional ones.
     ///                       Default: pi lux at the target
-    ///   inner=DEG outer=DEG from axis to full light and to no light. Default 45, inner 0.8 of outer
+    ///   outer=DEG           from the axis to where the cone ends. Default 45
+    ///   inner=DEG           from the axis to where it begins to fade. Default 0.8 outer
     ///   range=M             where the light has faded to nothing. Default: never
     ///   radius=M            of the shining sphere. Default 0: a point
     ///   near=M far=M        planes of the shadow map. Default: fitted to the scene
@@ -113,15 +114,15 @@ pub struct SceneArgs {
     pub shading: String,
 
     /// Light from everywhere, as a share of the brightest light's, 0 to 1
-    #[arg(long, value_name = "X", default_value_t = 0.08, value_parser = specs::share, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value_t = 0.08, value_parser = specs::share, allow_negative_numbers = true, help_heading = "Picture")]
     pub ambient: f32,
 
     /// Share of the diffuse light that stays in shadow, so that shadows do not look flat, 0 to 1
-    #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, allow_negative_numbers = true, help_heading = "Picture")]
     pub fill: f32,
 
     /// Factor from radiance to picture, or auto: white paper in full light gets 0.75
-    #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, help_heading = "Picture")]
+    #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, allow_negative_numbers = true, help_heading = "Picture")]
     pub exposure: specs::Exposure,
 
     /// Colour where nothing is drawn: r:g:b (linear) or #rrggbb (sRGB)
@@ -298,5 +299,15 @@ mod tests {
     #[test]
     fn the_definitions_are_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_help_names_every_built_in_scene() {
+        let mut command = Cli::command();
+        let render = command.find_subcommand_mut("render").expect("render is a command");
+        let help = render.render_long_help().to_string();
+        for builtin in umbrage_scene::builtins() {
+            assert!(help.contains(builtin.name), "{}", builtin.name);
+        }
     }
 }

@@ -20,7 +20,22 @@ use clap::Parser;
 use fault::{Fault, one_line};
 use std::process::ExitCode;
 
+/// Mesa's device-select layer asks Wayland which adapter the desktop uses, and libwayland writes to standard error when
+/// there is no desktop session. Umbrage sorts adapters itself, so the layer is switched off there.
+#[cfg(target_os = "linux")]
+fn silence_device_select() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the first thing that the process does; no other thread exists that could read the environment.
+        #[allow(unsafe_code)]
+        unsafe {
+            std::env::set_var("NODEVICE_SELECT", "1");
+        }
+    }
+}
+
 fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    silence_device_select();
     let done = match Cli::try_parse() {
         Ok(cli) => run(cli.command),
         Err(error) => wrong_use(&error),

@@ -170,7 +170,8 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
 pub fn color(text: &str) -> Result<Vec3, String> {
     let bad = || "write a colour as r:g:b (linear, 0 or more) or #rrggbb (sRGB)".to_owned();
     if let Some(hex) = text.strip_prefix('#') {
-        let digits = u32::from_str_radix(hex, 16).ok().filter(|_| hex.len() == 6).ok_or_else(bad)?;
+        let is_hex = hex.len() == 6 && hex.bytes().all(|b| b.is_ascii_hexdigit());
+        let digits = u32::from_str_radix(hex, 16).ok().filter(|_| is_hex).ok_or_else(bad)?;
         return Ok(Vec3::from(
             [16, 8, 0].map(|shift| linear_from_srgb(((digits >> shift) & 255) as f32 / 255.0)),
         ));
@@ -298,7 +299,10 @@ pub fn light(text: &str) -> Result<LightSpec, String> {
             "near" => above_zero(&value).map(|v| spec.near_m = Some(v)),
             "far" => above_zero(&value).map(|v| spec.far_m = Some(v)),
             _ if value.is_empty() => Err("name a picture".into()),
-            _ => Ok(spec.cookie = Some(PathBuf::from(value))),
+            _ => {
+                spec.cookie = Some(PathBuf::from(value));
+                Ok(())
+            }
         };
         set.map_err(|e| format!("{key}: {e}"))?;
     }

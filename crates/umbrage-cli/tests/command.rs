@@ -154,6 +154,8 @@ fn wrong_use_names_what_was_meant_before_anything_is_loaded() {
         (&["render", "--json", "--quiet"], &["--quiet"]),
         (&["render", "builtin:tors"], &["did you mean torus?"]),
         (&["render", "builtin:torus?scale=0"], &["scale"]),
+        (&["render", "--exposure", "-1"], &["--exposure"]),
+        (&["render", "--light", "kind=spot", "--lights-from", "a.json:A"], &["cannot be used with"]),
         (&["render", "--sise", "3x3"], &["--sise", "--size"]),
         (&["bench", "--techniques", "unshadowed,hrad"], &["hrad", "`hard`"]),
         (
