@@ -5,7 +5,7 @@ mod rows;
 
 use crate::process::{self, Done, failed};
 use crate::setup::{self, Need};
-use crate::slide;
+use crate::{picture, slide};
 use std::path::Path;
 
 /// The pictures' folder, from the top of the checkout.
@@ -64,7 +64,7 @@ pub fn run(_: &[String]) -> Done {
     // The picture at the head of README.md.
     let head = ["render", "--size", "960x540", "--msaa", "4", "--quiet", "-o", "docs/umbrage.png"];
     process::run(&mut process::umbrage("debug", head))?;
-    check_weight(&root.join("docs/umbrage.png"))?;
+    pack(&root.join("docs/umbrage.png"))?;
     let page = page::page(|picture| root.join(picture.path()).is_file());
     process::write(&root.join("docs/gallery.md"), page)?;
     println!("The gallery is drawn: docs/gallery.md. Look at what changed before you commit it.");
@@ -79,10 +79,11 @@ fn draw(root: &Path, picture: &Picture) -> Done {
         return Ok(());
     }
     process::run(process::umbrage("debug", picture.words()).arg("--quiet"))?;
-    check_weight(&root.join(picture.path()))
+    pack(&root.join(picture.path()))
 }
 
-fn check_weight(path: &Path) -> Done {
+fn pack(path: &Path) -> Done {
+    picture::repack(path)?;
     let bytes = std::fs::metadata(path).map_err(|e| failed(format!("{}: {e}", path.display())))?.len();
     if bytes > LIMIT_BYTES {
         let path = path.display();

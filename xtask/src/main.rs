@@ -9,6 +9,7 @@ mod demo;
 mod gallery;
 mod links;
 mod machine;
+mod picture;
 mod process;
 mod setup;
 mod slide;

@@ -1,6 +1,7 @@
 //! The slide of the cookie's picture: a leaded window, made here so that it needs no licence but ours.
 
-use crate::process::{Done, failed};
+use crate::picture;
+use crate::process::Done;
 use std::path::Path;
 
 const SIZE: usize = 256;
@@ -15,13 +16,7 @@ const GLASS: [[u8; 3]; 5] =
 
 /// Writes the slide.
 pub fn write(path: &Path) -> Done {
-    let why = |e: &dyn std::fmt::Display| failed(format!("{} cannot be written: {e}", path.display()));
-    let file = std::fs::File::create(path).map_err(|e| why(&e))?;
-    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), SIZE as u32, SIZE as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    let mut writer = encoder.write_header().map_err(|e| why(&e))?;
-    writer.write_image_data(&texels()).map_err(|e| why(&e))?;
-    writer.finish().map_err(|e| why(&e))
+    picture::write_rgb(path, SIZE as u32, SIZE as u32, &texels())
 }
 
 fn texels() -> Vec<u8> {

@@ -22,20 +22,21 @@ pub fn page(is_there: impl Fn(&Picture) -> bool) -> String {
     page
 }
 
-/// A heading, words, and pictures two by two.
+/// A heading, words, and pictures side by side.
 fn section(page: &mut String, row: &Row, pictures: &[&Picture]) {
     // Writing to a string cannot fail.
     let _ = writeln!(page, "\n## {} {}\n\n{}\n", row.id, row.title, row.text);
     if let [one] = pictures {
         let _ = writeln!(page, "{}\n\n{}", shown(one), one.caption);
     } else {
-        for (i, pair) in pictures.chunks(2).enumerate() {
+        let columns = if pictures.len() % 3 == 0 { 3 } else { 2 };
+        for (i, line) in pictures.chunks(columns).enumerate() {
             let cells = |of: &dyn Fn(&Picture) -> String| {
-                let cells: Vec<_> = pair.iter().map(|picture| of(picture)).collect();
+                let cells: Vec<_> = line.iter().map(|picture| of(picture)).collect();
                 format!("| {} |", cells.join(" | "))
             };
             let _ = writeln!(page, "{}{}", if i > 0 { "\n" } else { "" }, cells(&shown));
-            let _ = writeln!(page, "|{}", "---|".repeat(pair.len()));
+            let _ = writeln!(page, "|{}", "---|".repeat(line.len()));
             let _ = writeln!(page, "{}", cells(&|picture| picture.caption.to_owned()));
         }
     }

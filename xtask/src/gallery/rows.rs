@@ -44,9 +44,9 @@ pub const ROWS: &[Row] = &[
         id: "H3, H4",
         title: "Bias",
         text: "Planes turned from 0 to 89 degrees away from the light; none shadows another, so every dark spot is an \
-               error (acne). Polygon offset by slope follows the planes; a constant does not; a uniform bias in the \
-               lookup matrix must be as large as the steepest plane needs, and leaks where that is more than a \
-               caster's distance.",
+               error (acne). Polygon offset by slope follows each plane, so its picture is white all over; a constant \
+               does not. A uniform bias in the lookup matrix must be as large as the steepest plane needs, and then \
+               leaks wherever it is more than a caster's distance: the last two pictures show where things touch.",
         pictures: &[
             picture(
                 "h3-none",
@@ -67,6 +67,12 @@ pub const ROWS: &[Row] = &[
                 "h4-matrix",
                 "`bias=matrix`",
                 "builtin:tilt --view visibility --set map_size=512 --set bias=matrix",
+            ),
+            picture("h4-contact-slope", "`bias=slope`: shadows begin where things touch", "builtin:contact"),
+            picture(
+                "h4-contact-matrix",
+                "`bias=matrix`, large enough for 80 degrees: light leaks under everything",
+                "builtin:contact --set bias=matrix --set matrix_bias=0.04",
             ),
         ],
     },
@@ -100,7 +106,7 @@ pub const ROWS: &[Row] = &[
             "h10-behind",
             "the ground on our side of the light is dark",
             "builtin:columns --light position=0:1.5:3.4,target=0:2.4:0,inner=34,outer=40 \
-             --camera position=5:5.5:12,target=0:1.4:2",
+             --camera position=4:3.6:9,target=0:1.5:1.5",
         )],
     },
     Row {
