@@ -29,7 +29,7 @@ fn section(page: &mut String, row: &Row, pictures: &[&Picture]) {
     if let [one] = pictures {
         let _ = writeln!(page, "{}\n\n{}", shown(one), one.caption);
     } else {
-        let columns = if pictures.len() % 3 == 0 { 3 } else { 2 };
+        let columns = if pictures.len().is_multiple_of(3) { 3 } else { 2 };
         for (i, line) in pictures.chunks(columns).enumerate() {
             let cells = |of: &dyn Fn(&Picture) -> String| {
                 let cells: Vec<_> = line.iter().map(|picture| of(picture)).collect();
