@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::{IsTerminal, Write};
 use umbrage_render::umbrage::core::technique::{Settings, TECHNIQUES};
-use umbrage_render::{Gpu, RenderOptions, Renderer};
+use umbrage_render::{Gpu, Measure, Renderer};
 
 const UNSHADOWED: &str = "unshadowed";
 
@@ -34,7 +34,7 @@ struct Row {
     frame_ms: f64,
     min_ms: f64,
     max_ms: f64,
-    /// Median minus that of the unshadowed frame.
+    /// Median of the differences between each frame and the unshadowed one before it.
     shadow_cost_ms: f64,
     gpu_ms: Option<f64>,
     draws: u64,
@@ -59,7 +59,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Fault> {
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
     let renderers = settings
         .iter()
-        .map(|settings| renderer(args, &stage, &gpu, settings, false))
+        .map(|settings| renderer(args, &stage, &gpu, settings))
         .collect::<Result<Vec<_>, _>>()?;
     let mut warnings = stage.scene.warnings.clone();
     for warning in renderers.iter().flat_map(|renderer| renderer.warnings()) {
@@ -71,18 +71,17 @@ pub fn run(args: &BenchArgs) -> Result<(), Fault> {
     warnings.iter().for_each(|warning| tell("warning", warning));
 
     let frames_ms = measure(&renderers, args.frames)?;
-    let memory: Vec<(u64, Option<MapFormat>)> =
-        renderers.iter().map(|r| (r.shadow_memory_bytes(), MapFormat::of_renderer(r))).collect();
-    drop(renderers);
     let mut rows = Vec::new();
-    for ((settings, frames_ms), (bytes, format)) in settings.iter().zip(frames_ms).zip(memory) {
-        // Counting slows the frame, so it is done in one of its own.
-        let passes = count(args, &stage, &gpu, settings)?;
-        rows.push(row(settings, frames_ms, bytes, format, passes));
+    for ((settings, renderer), frames_ms) in settings.iter().zip(&renderers).zip(frames_ms) {
+        rows.push(row(settings, renderer, frames_ms)?);
     }
     gpu.check()?;
-    let bare = rows.iter().find(|row| row.technique == UNSHADOWED).map_or(0.0, |row| row.frame_ms);
-    rows.iter_mut().for_each(|row| row.shadow_cost_ms = row.frame_ms - bare);
+    let bare = rows.first().map(|row| row.frames_ms.clone()).unwrap_or_default();
+    for row in &mut rows {
+        // Frame by frame: neighbours in time saw the same machine.
+        let costs: Vec<f64> = row.frames_ms.iter().zip(&bare).map(|(with, without)| with - without).collect();
+        row.shadow_cost_ms = json::median(&costs);
+    }
     let report = Report {
         machine: Machine::of(&gpu.info),
         scene: SceneJson::of(&stage.scene),
@@ -123,9 +122,8 @@ fn renderer<'a>(
     stage: &Stage,
     gpu: &'a Gpu,
     settings: &Settings,
-    statistics: bool,
 ) -> Result<Renderer<'a>, Fault> {
-    let options = RenderOptions { statistics, ..setup::options(&args.scene, stage, settings.clone()) };
+    let options = setup::options(&args.scene, stage, settings.clone());
     Ok(Renderer::new(gpu, &stage.scene, &stage.camera, options)?)
 }
 
@@ -133,7 +131,7 @@ fn renderer<'a>(
 fn measure(renderers: &[Renderer<'_>], frames: u32) -> Result<Vec<Vec<f64>>, Fault> {
     let progress = std::io::stderr().is_terminal();
     for renderer in renderers {
-        renderer.frame()?; // Drivers compile in the first.
+        renderer.frame(Measure::Frame)?; // Drivers compile in the first.
     }
     let mut times = vec![Vec::with_capacity(frames as usize); renderers.len()];
     for frame in 0..frames {
@@ -141,7 +139,7 @@ fn measure(renderers: &[Renderer<'_>], frames: u32) -> Result<Vec<Vec<f64>>, Fau
             let _ = write!(std::io::stderr(), "\rframe {} of {frames}", frame + 1);
         }
         for (renderer, times) in renderers.iter().zip(&mut times) {
-            times.push(renderer.frame()?.frame_ms);
+            times.push(renderer.frame(Measure::Frame)?.frame_ms);
         }
     }
     if progress {
@@ -150,27 +148,21 @@ fn measure(renderers: &[Renderer<'_>], frames: u32) -> Result<Vec<Vec<f64>>, Fau
     Ok(times)
 }
 
-fn count(args: &BenchArgs, stage: &Stage, gpu: &Gpu, settings: &Settings) -> Result<Vec<PassJson>, Fault> {
-    let renderer = renderer(args, stage, gpu, settings, true)?;
-    renderer.frame()?;
-    Ok(renderer.frame()?.passes.iter().map(PassJson::from).collect())
-}
-
-fn row(
-    settings: &Settings,
-    frames_ms: Vec<f64>,
-    shadow_memory_bytes: u64,
-    map_format: Option<MapFormat>,
-    passes: Vec<PassJson>,
-) -> Row {
+/// One technique's row. Passes are timed and counted in frames of their own, because that slows them.
+fn row(settings: &Settings, renderer: &Renderer<'_>, frames_ms: Vec<f64>) -> Result<Row, Fault> {
+    let mut measured = renderer.frame(Measure::Passes)?.passes;
+    for (pass, counted) in measured.iter_mut().zip(renderer.frame(Measure::Counts)?.passes) {
+        pass.statistics = counted.statistics;
+    }
+    let passes: Vec<PassJson> = measured.iter().map(PassJson::from).collect();
     let sum = |of: fn(&PassJson) -> u64| passes.iter().map(of).sum();
     let counted = |of: fn(&json::StatisticsJson) -> u64| {
         passes.iter().map(|pass| pass.statistics.as_ref().map(of)).sum::<Option<u64>>()
     };
-    Row {
+    Ok(Row {
         technique: settings.technique.id,
         params: json::params(settings),
-        map_format,
+        map_format: MapFormat::of_renderer(renderer),
         frame_ms: json::median(&frames_ms),
         min_ms: frames_ms.iter().copied().fold(f64::MAX, f64::min),
         max_ms: frames_ms.iter().copied().fold(0.0, f64::max),
@@ -181,10 +173,10 @@ fn row(
         vertices: sum(|pass| pass.vertices),
         vertex_runs: counted(|s| s.vertex_runs),
         fragment_runs: counted(|s| s.fragment_runs),
-        shadow_memory_bytes,
+        shadow_memory_bytes: renderer.shadow_memory_bytes(),
         passes,
         frames_ms,
-    }
+    })
 }
 
 fn describe(report: &Report) -> String {

@@ -35,7 +35,7 @@ fn describe(pass: &Pass) -> serde_json::Value {
         "target": target,
         "clear_depth": json::decimal(pass.clear_depth),
         "color": pass.color,
-        "cull": match pass.cull { Cull::None => "none", Cull::ByMaterial => "by-material" },
+        "cull": match pass.cull { Cull::BackOfClosed => "back-of-closed", Cull::ByMaterial => "by-material" },
         "polygon_offset": { "constant": pass.offset.constant, "slope": json::decimal(pass.offset.slope) },
         "draws": match pass.draws { Draws::Casters => "casters", Draws::Surfaces => "surfaces" },
     })

@@ -8,7 +8,7 @@ use crate::text;
 use std::path::Path;
 use std::time::Instant;
 use umbrage_render::picture::write_png;
-use umbrage_render::{FrameReport, Gpu, RenderOptions, Renderer, View};
+use umbrage_render::{Gpu, Measure, PassReport, RenderOptions, Renderer, View};
 
 /// Draws it, writes it, says what it is.
 ///
@@ -23,7 +23,6 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
     let options = RenderOptions {
         view,
         shown_light: args.light_index,
-        statistics: args.statistics,
         ..setup::options(&args.scene, &stage, settings)
     };
 
@@ -31,7 +30,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
     let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
     let setup_ms = ms_since(start);
-    let frames = draw(&renderer, args.frames)?;
+    let drawn = draw(&renderer, args.frames, args.statistics)?;
     let pixels = renderer.picture()?;
     gpu.check()?;
 
@@ -44,23 +43,45 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
         warnings.iter().for_each(|warning| tell("warning", warning));
     }
     if args.json {
-        let report = report(args, &stage, &gpu, &renderer, &frames, warnings, [setup_ms, write_ms]);
+        let report = report(args, &stage, &gpu, &renderer, &drawn, warnings, [setup_ms, write_ms]);
         return json::print(&report);
     }
-    if args.quiet { Ok(()) } else { say(&summary(args, &stage, &gpu, &renderer, &frames)) }
+    if args.quiet { Ok(()) } else { say(&summary(args, &stage, &gpu, &renderer, &drawn)) }
 }
 
 fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
-/// The frames; the first is dropped when there are several, because drivers compile then.
-fn draw(renderer: &Renderer<'_>, count: u32) -> Result<Vec<FrameReport>, Fault> {
-    let mut frames = (0..count).map(|_| renderer.frame()).collect::<Result<Vec<_>, _>>()?;
-    if frames.len() > 1 {
-        frames.remove(0);
+/// What was drawn, and how long it took.
+struct Drawn {
+    /// One for each frame that counts.
+    frames_ms: Vec<f64>,
+    /// Of one frame, with all that could be measured of it.
+    passes: Vec<PassReport>,
+}
+
+/// The frames; the first is dropped when there are several, because drivers compile then. Passes are measured in a frame
+/// of their own, because that takes time too; a single frame has to do for both.
+fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, Fault> {
+    let frames = if count > 1 { count } else { 0 };
+    let mut frames_ms = Vec::new();
+    for _ in 0..frames {
+        frames_ms.push(renderer.frame(Measure::Frame)?.frame_ms);
     }
-    Ok(frames)
+    let measured = renderer.frame(Measure::Passes)?;
+    if frames_ms.is_empty() {
+        frames_ms.push(measured.frame_ms);
+    } else {
+        frames_ms.remove(0);
+    }
+    let mut passes = measured.passes;
+    if statistics {
+        for (pass, counted) in passes.iter_mut().zip(renderer.frame(Measure::Counts)?.passes) {
+            pass.statistics = counted.statistics;
+        }
+    }
+    Ok(Drawn { frames_ms, passes })
 }
 
 /// Can the picture be written there? Asked before any work.
@@ -97,19 +118,12 @@ fn report(
     stage: &Stage,
     gpu: &Gpu,
     renderer: &Renderer<'_>,
-    frames: &[FrameReport],
+    drawn: &Drawn,
     warnings: Vec<String>,
     [setup_ms, write_ms]: [f64; 2],
 ) -> RenderJson {
     let options = renderer.options();
-    let frames_ms: Vec<f64> = frames.iter().map(|frame| frame.frame_ms).collect();
-    let frame_ms = json::median(&frames_ms);
-    let mut passes: Vec<PassJson> =
-        frames.last().map(|frame| frame.passes.iter().map(PassJson::from).collect()).unwrap_or_default();
-    for (index, pass) in passes.iter_mut().enumerate() {
-        let times: Option<Vec<f64>> = frames.iter().map(|frame| frame.passes[index].gpu_ms).collect();
-        pass.gpu_ms = times.map(|times| json::median(&times));
-    }
+    let frame_ms = json::median(&drawn.frames_ms);
     RenderJson {
         machine: Machine::of(&gpu.info),
         scene: SceneJson::of(&stage.scene),
@@ -120,9 +134,9 @@ fn report(
         msaa: options.samples,
         view: options.view.id(),
         light_index: options.shown_light,
-        passes,
+        passes: drawn.passes.iter().map(PassJson::from).collect(),
         frame_ms,
-        frames_ms,
+        frames_ms: drawn.frames_ms.clone(),
         shadow_memory_bytes: renderer.shadow_memory_bytes(),
         exposure: json::decimal(renderer.exposure()),
         timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
@@ -132,14 +146,8 @@ fn report(
     }
 }
 
-fn summary(
-    args: &RenderArgs,
-    stage: &Stage,
-    gpu: &Gpu,
-    renderer: &Renderer<'_>,
-    frames: &[FrameReport],
-) -> String {
-    let times: Vec<f64> = frames.iter().map(|frame| frame.frame_ms).collect();
+fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
+    let times: Vec<f64> = drawn.frames_ms.clone();
     let options = renderer.options();
     let maps = match renderer.map_format() {
         Some(format) => {

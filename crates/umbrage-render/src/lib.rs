@@ -29,5 +29,5 @@ pub use gpu::Gpu;
 pub use layout::MAX_LIGHTS;
 pub use options::{RenderOptions, View};
 pub use renderer::Renderer;
-pub use timing::Statistics;
+pub use timing::{Measure, Statistics};
 pub use umbrage;

@@ -78,8 +78,6 @@ pub struct RenderOptions {
     pub exposure: Option<f32>,
     /// Linear RGB where nothing is drawn.
     pub background: Vec3,
-    /// Count vertices and fragments on the GPU, where it can. Costs a little time.
-    pub statistics: bool,
 }
 
 impl RenderOptions {
@@ -96,7 +94,6 @@ impl RenderOptions {
             fill: 0.1,
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
-            statistics: false,
         }
     }
 }

@@ -13,6 +13,18 @@ pub struct Statistics {
     pub fragment_runs: u64,
 }
 
+/// What to measure of a frame beside its time from start to end. Measuring makes a frame slower: software
+/// rasterisers, for one, finish all work before each time stamp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Nothing: for the time of the whole frame.
+    Frame,
+    /// Each pass's time on the GPU.
+    Passes,
+    /// Each pass's vertices and fragments, counted by the GPU.
+    Counts,
+}
+
 /// Queries for a number of passes.
 #[derive(Debug)]
 pub struct Queries {
@@ -31,8 +43,8 @@ const STATISTICS: wgpu::PipelineStatisticsTypes = wgpu::PipelineStatisticsTypes:
 const ALIGN: u64 = 256;
 
 impl Queries {
-    /// Room for `passes` passes; statistics only when asked for.
-    pub fn new(gpu: &Gpu, passes: u32, statistics: bool) -> Self {
+    /// Room for `passes` passes.
+    pub fn new(gpu: &Gpu, passes: u32, measure: Measure) -> Self {
         let set = |label, ty, count| {
             gpu.device.create_query_set(&wgpu::QuerySetDescriptor { label: Some(label), ty, count })
         };
@@ -47,8 +59,9 @@ impl Queries {
         };
         use wgpu::BufferUsages as Usage;
         Self {
-            stamps: gpu.has_timestamps().then(|| set("stamps", wgpu::QueryType::Timestamp, 2 * passes)),
-            statistics: (statistics && gpu.has_statistics())
+            stamps: (measure == Measure::Passes && gpu.has_timestamps())
+                .then(|| set("stamps", wgpu::QueryType::Timestamp, 2 * passes)),
+            statistics: (measure == Measure::Counts && gpu.has_statistics())
                 .then(|| set("statistics", wgpu::QueryType::PipelineStatistics(STATISTICS), passes)),
             resolved: buffer("queries", Usage::QUERY_RESOLVE | Usage::COPY_SRC),
             read: buffer("queries read", Usage::MAP_READ | Usage::COPY_DST),

@@ -43,7 +43,8 @@ pub fn load(spec: &str) -> Result<Scene, SceneError> {
         "gltf" | "glb" => gltf::load(path, &read()?)?,
         "obj" => {
             let mut scene = obj::load(path, &read()?)?;
-            let uv_set = |mesh: &Mesh| scene.materials[mesh.material].normal_texture.map(|texture| texture.uv_set);
+            let uv_set =
+                |mesh: &Mesh| scene.materials[mesh.material].normal_texture.map(|texture| texture.uv_set);
             let uv_sets: Vec<_> = scene.meshes.iter().map(uv_set).collect();
             tangents::generate_all(&mut scene.meshes, &uv_sets);
             scene
