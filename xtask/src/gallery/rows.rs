@@ -154,7 +154,11 @@ pub const ROWS: &[Row] = &[
             ),
             picture("scene-tilt", "`builtin:tilt`: planes turned away from the light", "builtin:tilt"),
             picture("scene-contact", "`builtin:contact`: things that touch", "builtin:contact"),
-            picture("scene-knots", "`builtin:knots`: half a million triangles", "builtin:knots"),
+            picture(
+                "scene-knots",
+                "`builtin:knots`: half a million triangles",
+                "builtin:knots --camera position=2:3:6,fov=40",
+            ),
         ],
     },
     Row {
