@@ -46,7 +46,7 @@ pub const ROWS: &[Row] = &[
         text: "Planes turned from 0 to 89 degrees away from the light; none shadows another, so every dark spot is an \
                error (acne). Polygon offset by slope follows each plane, so its picture is white all over; a constant \
                does not. A uniform bias in the lookup matrix must be as large as the steepest plane needs, and then \
-               leaks wherever it is more than a caster's distance: the last two pictures show where things touch.",
+               light leaks wherever a caster is closer to its receiver than that.",
         pictures: &[
             picture(
                 "h3-none",
@@ -65,14 +65,19 @@ pub const ROWS: &[Row] = &[
             ),
             picture(
                 "h4-matrix",
-                "`bias=matrix`",
-                "builtin:tilt --view visibility --set map_size=512 --set bias=matrix",
+                "`bias=matrix` of a tenth of the depth range",
+                "builtin:tilt --view visibility --set map_size=512 --set bias=matrix --set matrix_bias=0.1",
             ),
-            picture("h4-contact-slope", "`bias=slope`: shadows begin where things touch", "builtin:contact"),
+            picture(
+                "h4-contact-slope",
+                "`bias=slope`: shadows begin where things touch",
+                "builtin:contact --camera position=1.6:1.5:2.4,target=-0.2:0.25:0,fov=42 --set map_size=512",
+            ),
             picture(
                 "h4-contact-matrix",
-                "`bias=matrix`, large enough for 80 degrees: light leaks under everything",
-                "builtin:contact --set bias=matrix --set matrix_bias=0.04",
+                "`bias=matrix` as above: the small ball and the box on top have lost their shadows",
+                "builtin:contact --camera position=1.6:1.5:2.4,target=-0.2:0.25:0,fov=42 --set map_size=512 \
+                 --set bias=matrix --set matrix_bias=0.1",
             ),
         ],
     },
