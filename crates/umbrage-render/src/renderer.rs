@@ -20,7 +20,7 @@ use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::{Combination, Filter, Storage};
 use umbrage::core::{Camera, DEPTH, Frustum, Light};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
-use umbrage_scene::{Image, Reflectance, Scene};
+use umbrage_scene::{Image, Instance, Reflectance, Scene};
 use wgpu::util::DeviceExt;
 
 /// Bytes between the matrices of two views in the casters' uniform buffer.
@@ -78,8 +78,12 @@ impl<'a> Renderer<'a> {
         let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
 
         let lights_world: Vec<Light> = scene.lights.iter().map(|l| l.light).collect();
+        let bounds = scene.bounds();
+        let middle =
+            |i: &Instance| i.world_from_object.transform_point3(scene.meshes[i.mesh].bounds.center());
+        let middles = scene.instances.iter().map(middle);
         let exposure =
-            options.exposure.unwrap_or_else(|| exposure::automatic(&lights_world, &scene.bounds()));
+            options.exposure.unwrap_or_else(|| exposure::automatic(&lights_world, &bounds, middles));
         let layouts = Layouts::new(&gpu.device);
         let geometry = Geometry::new(&gpu.device, scene);
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);

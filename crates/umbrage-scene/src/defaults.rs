@@ -6,14 +6,20 @@ use umbrage_core::{Aabb, Camera, Light};
 
 /// Full angle of the camera from bottom to top.
 const FOV_Y_RAD: f32 = 40.0 * std::f32::consts::PI / 180.0;
+/// Room around the subject in the default picture.
+const FRAME_MARGIN: f32 = 1.12;
 /// From the subject to the eye: the front right, above. Not yet of unit length.
 const TO_EYE: Vec3 = Vec3::new(0.6, 0.45, 1.0);
 /// From the subject to the light: the eye's upper left, in front of the subject. Not yet of unit length.
 const TO_LIGHT: Vec3 = Vec3::new(-0.75, 1.25, 0.85);
 /// Distance of the light in radii of the subject.
 const LIGHT_RADII: f32 = 4.0;
-/// The light's cone is wider than the subject by this.
-const CONE_MARGIN: f32 = 1.15;
+/// The light's cone is wider than the subject by this: what the subject throws its shadow on is lit too.
+const CONE_MARGIN: f32 = 2.0;
+/// Share of the cone's angle that has the full light.
+const CONE_INNER: f32 = 0.6;
+/// How far the ground lies below the lowest point, in radii: what lies flat must not fight with it for pixels.
+const GROUND_GAP: f32 = 5e-4;
 /// Half the ground's edge in radii of the footprint.
 const GROUND_RADII: f32 = 3.2;
 
@@ -28,21 +34,37 @@ fn sphere_around(bounds: &Aabb) -> (Vec3, f32) {
     (center, radius.max(1e-5 * center.abs().max_element()))
 }
 
+/// How far the default eye stands from the middle so that its picture of 16:9 just holds the box, with a margin; and
+/// how far from the eye the box begins.
+fn framing_distance(bounds: &Aabb, radius: f32) -> (f32, f32) {
+    let back = TO_EYE.normalize();
+    let right = Vec3::Y.cross(back).normalize();
+    let up = back.cross(right);
+    let tan = (0.5 * FOV_Y_RAD).tan() / FRAME_MARGIN;
+    let corners = bounds.corners().map(|p| p - bounds.center());
+    let corners = if bounds.is_empty() { [Vec3::ZERO; 8] } else { corners };
+    let towards = corners.iter().map(|p| p.dot(back)).fold(0.0, f32::max);
+    let holds = |p: &Vec3| p.dot(back) + (p.dot(up).abs() / tan).max(p.dot(right).abs() / (tan * 16.0 / 9.0));
+    let distance = corners.iter().map(holds).fold(towards + 0.5 * radius, f32::max);
+    (distance, distance - towards)
+}
+
 /// Gives a scene without camera a camera, and one without light a light.
 ///
-/// The camera stands in front, to the right and above, at 40 degrees, and its picture of 16:9 holds the whole sphere around
-/// the scene. The light is a white spot light from its upper left; its cone holds the sphere with a margin of 15 %, full
-/// up to 80 % of the angle, and gives pi lux at the sphere's middle, so that white paper there has a radiance of 1.
+/// The camera stands in front, to the right and above, at 40 degrees, and its picture of 16:9 holds the whole box around
+/// the scene. The light is a white spot light from its upper left; its cone is twice as wide as
+/// the sphere, full up to 60 % of the angle, and gives pi lux at the sphere's middle, so that white paper there has a
+/// radiance of 1.
 /// Returns one clause for each that was added.
 pub fn add_defaults(scene: &mut Scene) -> Vec<String> {
-    let (center, radius) = sphere_around(&scene.bounds());
+    let bounds = scene.bounds();
+    let (center, radius) = sphere_around(&bounds);
     let mut notes = Vec::new();
     if scene.cameras.is_empty() {
-        // The sphere touches the picture's upper and lower edge; the picture is wider than high.
-        let distance = 1.05 * radius / (0.5 * FOV_Y_RAD).sin();
+        let (distance, closest) = framing_distance(&bounds, radius);
         let eye = center + TO_EYE.normalize() * distance;
         // Both planes leave room for a ground around the subject, which comes closer to the eye and goes farther.
-        let (near, far) = (0.05 * distance, distance + 2.0 * GROUND_RADII * radius);
+        let (near, far) = ((0.05 * distance).min(0.5 * closest), distance + 2.0 * GROUND_RADII * radius);
         let camera = Camera::look_at(eye, center, FOV_Y_RAD, near, far);
         scene.cameras.push(SceneCamera { name: "default camera".into(), camera });
         notes.push(format!(
@@ -54,7 +76,7 @@ pub fn add_defaults(scene: &mut Scene) -> Vec<String> {
         let outer = (CONE_MARGIN / LIGHT_RADII).asin();
         let place = center + TO_LIGHT.normalize() * distance;
         let intensity = std::f32::consts::PI * distance * distance;
-        let light = Light { intensity, ..Light::spot(place, center, 0.8 * outer, outer) };
+        let light = Light { intensity, ..Light::spot(place, center, CONE_INNER * outer, outer) };
         scene.lights.push(SceneLight { name: "default light".into(), light, cookie: None });
         let degrees = outer.to_degrees();
         notes.push(format!(
@@ -72,7 +94,7 @@ pub fn add_ground(scene: &mut Scene) {
     let footprint = (0.5 * Vec2::new(bounds.size().x, bounds.size().z)).length();
     let half =
         GROUND_RADII * if footprint > 0.1 * radius && footprint.is_finite() { footprint } else { radius };
-    let y = if bounds.is_empty() { 0.0 } else { bounds.min.y };
+    let y = if bounds.is_empty() { 0.0 } else { bounds.min.y - GROUND_GAP * radius };
     let corner = |x: f32, z: f32| Vec3::new(center.x + x * half, y, center.z + z * half);
     let positions = vec![corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
     let material = scene.materials.len();
@@ -142,14 +164,15 @@ mod tests {
                 );
                 let umbrage_core::LightKind::Spot { inner_rad, .. } = light.kind else { panic!() };
                 let angle = (*p - light.position_world).angle_between(light.direction_world);
-                assert!(angle < inner_rad / 0.8, "{size}: {angle}");
+                assert!(angle < inner_rad / CONE_INNER, "{size}: {angle}");
             }
             let corner = scene.meshes[1].bounds.corners().map(|p| -view.transform_point3(p).z);
             assert!(corner.iter().all(|z| *z < camera.far_m), "{size}: the ground's far corner is cut");
             let lux =
                 light.illuminance_lux(light.position_world.distance(sphere_around(&lone(size).bounds()).0));
             assert!((lux / std::f32::consts::PI - 1.0).abs() < 1e-3, "{size}: {lux}");
-            assert_eq!(scene.meshes[1].bounds.max.y, scene.meshes[0].bounds.min.y, "{size}");
+            let gap = (scene.meshes[0].bounds.min.y - scene.meshes[1].bounds.max.y) / size;
+            assert!(gap > 1e-5 && gap < 1e-2, "{size}: {gap}");
         }
     }
 
