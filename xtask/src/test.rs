@@ -1,0 +1,108 @@
+//! `cargo xtask test`: everything that must hold before a change goes in.
+
+use crate::process::{self, Done, Fault, failed};
+use crate::setup::{self, Need};
+use crate::{checks, links};
+use std::time::{Duration, Instant};
+
+/// One step, cheap ones first.
+struct Step {
+    name: &'static str,
+    run: fn() -> Done,
+    /// What to do when it fails.
+    advice: &'static str,
+}
+
+/// Golden images exist for lavapipe alone, and lavapipe is at home on Linux.
+const HAS_GOLDENS: bool = cfg!(target_os = "linux");
+
+const STEPS: &[Step] = &[
+    Step {
+        name: "set up",
+        run: || setup::before_build(if HAS_GOLDENS { Need::Goldens } else { Need::Draw }),
+        advice: "install what is named above",
+    },
+    Step {
+        name: "format",
+        run: || process::run(&mut process::cargo(["fmt", "--all", "--check"])),
+        advice: "type `cargo fmt --all` (`rustup component add rustfmt` if there is none)",
+    },
+    Step { name: "papers", run: links::check, advice: "mend the link, or make the file that it names" },
+    Step {
+        name: "one version of each",
+        run: checks::one_version_each,
+        advice: "`cargo tree --duplicates` says who asks for the other version",
+    },
+    Step {
+        name: "core without a GPU API",
+        run: checks::core_without_gpu,
+        advice: "what needs a GPU belongs into the crate `umbrage` or above it",
+    },
+    Step {
+        name: "lints",
+        run: || {
+            process::run(&mut process::cargo([
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--",
+                "-D",
+                "warnings",
+            ]))
+        },
+        advice: "mend what clippy names (`rustup component add clippy` if there is none)",
+    },
+    Step {
+        name: "tests",
+        run: tests,
+        advice: "a golden that changed on purpose: `cargo xtask bless`, then look at the pictures",
+    },
+    Step {
+        name: "documentation",
+        run: || {
+            let mut doc = process::cargo(["doc", "--workspace", "--no-deps"]);
+            process::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
+        },
+        advice: "mend what rustdoc names",
+    },
+];
+
+/// `cargo xtask test`
+pub fn run(_: &[String]) -> Done {
+    let mut times = Vec::new();
+    for (i, step) in STEPS.iter().enumerate() {
+        eprintln!("\n== {}/{} {}", i + 1, STEPS.len(), step.name);
+        let start = Instant::now();
+        let done = (step.run)();
+        times.push((step.name, start.elapsed()));
+        if let Err(fault) = done {
+            print_times(&times, "FAILED");
+            let (Fault::Failed(message) | Fault::WrongUse(message)) = fault;
+            return Err(failed(format!("{}: {message}; {}", step.name, step.advice)));
+        }
+    }
+    print_times(&times, "passed");
+    if HAS_GOLDENS {
+        println!("All {} steps passed.", STEPS.len());
+    } else {
+        println!("All {} steps passed, but golden images were NOT compared: that needs Linux.", STEPS.len());
+    }
+    Ok(())
+}
+
+fn tests() -> Done {
+    let mut test = process::cargo(["test", "--workspace"]);
+    if HAS_GOLDENS {
+        // A golden test that finds no lavapipe skips; here that is a failure.
+        test.env("UMBRAGE_GOLDEN_REQUIRED", "1");
+    }
+    process::run(&mut test)
+}
+
+fn print_times(times: &[(&str, Duration)], last: &str) {
+    println!();
+    for (i, (name, time)) in times.iter().enumerate() {
+        let end = if i + 1 == times.len() { last } else { "passed" };
+        println!("{name:<24} {:>7.1} s  {end}", time.as_secs_f64());
+    }
+}
