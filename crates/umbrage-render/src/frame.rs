@@ -43,7 +43,6 @@ impl Renderer<'_> {
         let start = Instant::now();
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        self.record_transitions(&mut encoder);
         let mut pass = 0;
         let mut work = Vec::with_capacity(names.len());
         // 1. Each light's map.
@@ -146,27 +145,6 @@ impl Renderer<'_> {
             names.push("blended".to_owned());
         }
         names
-    }
-
-    /// Makes maps, G-buffer and depth ready to be drawn to all at once, so that no barrier stands between the passes
-    /// that do not read each other: the surfaces may begin while the maps are still being filled.
-    fn record_transitions(&self, encoder: &mut wgpu::CommandEncoder) {
-        let drawn = |view: &'_ wgpu::TextureView, state| wgpu::TextureTransition {
-            texture: view.texture().clone(),
-            selector: None,
-            state,
-        };
-        let maps =
-            self.shadows.as_ref().map(|s| drawn(s.maps.array(), wgpu::TextureUses::DEPTH_STENCIL_WRITE));
-        let gbuffer = self.targets.gbuffer.as_ref().map(|view| drawn(view, wgpu::TextureUses::COLOR_TARGET));
-        let depth = drawn(&self.targets.depth, wgpu::TextureUses::DEPTH_STENCIL_WRITE);
-        let all: Vec<_> = maps.into_iter().chain(gbuffer).chain([depth]).collect();
-        let all = all.iter().map(|t| wgpu::TextureTransition {
-            texture: &t.texture,
-            selector: t.selector.clone(),
-            state: t.state,
-        });
-        encoder.transition_resources(std::iter::empty(), all);
     }
 
     fn record_map(
