@@ -2,7 +2,7 @@
 
 use crate::bounds::Aabb;
 use crate::depth::DepthConvention;
-use glam::{Mat4, Vec4, Vec4Swizzles};
+use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
 /// The planes of a view's clip volume in world space; a point is inside when each `dot(plane, (p, 1)) >= 0`.
 #[derive(Clone, Copy, Debug)]
@@ -25,18 +25,32 @@ impl Frustum {
             return false;
         }
         self.planes_world.iter().all(|plane| {
-            let farthest =
-                glam::Vec3::select(plane.xyz().cmpge(glam::Vec3::ZERO), bounds_world.max, bounds_world.min);
+            let farthest = Vec3::select(plane.xyz().cmpge(Vec3::ZERO), bounds_world.max, bounds_world.min);
             plane.dot(farthest.extend(1.0)) >= 0.0
         })
     }
+}
+
+/// May any part of a box be inside a cone without end? The box's sphere is asked, so the answer is never false for a box
+/// that is, and sometimes true for one that is not. A spot light's map is square: its corners lie outside the cone,
+/// and what is only there neither throws nor receives a shadow of that light.
+pub fn cone_may_see(apex_world: Vec3, axis_world: Vec3, outer_rad: f32, bounds_world: &Aabb) -> bool {
+    if bounds_world.is_empty() {
+        return false;
+    }
+    let to_center = bounds_world.center() - apex_world;
+    let along = to_center.dot(axis_world);
+    let across = (to_center.length_squared() - along * along).max(0.0).sqrt();
+    let (sin, cos) = outer_rad.sin_cos();
+    // Signed distance from the cone's surface; behind the apex the apex itself is nearest, and farther than this says.
+    cos * across - sin * along <= bounds_world.radius()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::projection::{orthographic, perspective};
-    use glam::Vec3;
+    use proptest::prelude::*;
 
     fn around(center: Vec3) -> Aabb {
         Aabb { min: center - 0.5, max: center + 0.5 }
@@ -64,5 +78,27 @@ mod tests {
                 );
             }
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_box_with_a_point_in_the_cone_is_seen(
+            x in -9.0f32..9.0, y in -9.0f32..9.0, z in -9.0f32..9.0, half in 0.01f32..2.0, angle in 0.05f32..1.5,
+        ) {
+            let (bounds, axis) = (around(Vec3::new(x, y, z)), Vec3::new(0.6, 0.0, -0.8));
+            let bounds = Aabb { min: bounds.min - half, max: bounds.max + half };
+            let inside = |p: Vec3| p.angle_between(axis) <= angle;
+            if bounds.corners().into_iter().any(inside) {
+                prop_assert!(cone_may_see(Vec3::ZERO, axis, angle, &bounds));
+            }
+        }
+    }
+
+    #[test]
+    fn the_corners_of_the_square_around_a_cone_are_not_seen() {
+        let at = |x: f32, y: f32| around(Vec3::new(x, y, -10.0));
+        let seen = |bounds: Aabb| cone_may_see(Vec3::ZERO, Vec3::NEG_Z, std::f32::consts::FRAC_PI_4, &bounds);
+        assert!(seen(at(0.0, 0.0)) && seen(at(9.0, 0.0)) && seen(at(6.5, 6.5)));
+        assert!(!seen(at(9.0, 9.0)) && !seen(at(0.0, 14.0)) && !seen(around(Vec3::Z * 5.0)));
     }
 }

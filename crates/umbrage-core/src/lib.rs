@@ -20,5 +20,5 @@ pub mod wgsl;
 pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
 pub use depth::{DEPTH, DepthConvention};
-pub use frustum::Frustum;
+pub use frustum::{Frustum, cone_may_see};
 pub use light::{Light, LightError, LightKind};

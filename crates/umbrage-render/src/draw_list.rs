@@ -7,7 +7,7 @@ use glam::{Vec3, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use umbrage::core::fit::ShadowView;
 use umbrage::core::idle::flat_caster_is_idle;
-use umbrage::core::{Aabb, Frustum, Light};
+use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
 use umbrage_scene::{Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
@@ -144,8 +144,14 @@ impl Items {
             let receivers = others.map(|other| other.bounds_world);
             item.plane_world.is_some_and(|plane| flat_caster_is_idle(light, plane, receivers, tolerance_m))
         };
-        let seen =
-            self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && (all || !is_idle(item)));
+        let in_cone = |bounds: &Aabb| match light.kind {
+            LightKind::Spot { outer_rad, .. } => {
+                cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds)
+            }
+            _ => true,
+        };
+        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && !is_idle(item));
+        let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
         batches(scene, seen.map(|item| (item, item.closed && in_front(&item.bounds_world))), instances)
     }
 }
