@@ -48,6 +48,17 @@ pub fn adapters() -> Vec<wgpu::Adapter> {
 const MEASURING: wgpu::Features =
     wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::PIPELINE_STATISTICS_QUERY);
 
+/// One line; out of memory with the way out of it.
+fn described(error: &wgpu::Error) -> String {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => {
+            "its memory is full; choose a smaller picture (--size) or smaller maps (--set map_size=...)"
+                .to_owned()
+        }
+        _ => error.to_string().split_whitespace().collect::<Vec<_>>().join(" "),
+    }
+}
+
 impl Gpu {
     /// The best adapter, or the first whose name contains `name` (letters' case aside), and a device of it with the
     /// default limits of WebGPU, raised only where a picture or map may be larger.
@@ -90,9 +101,7 @@ impl Gpu {
         let sink = Arc::clone(&errors);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             if let Ok(mut first) = sink.lock() {
-                first.get_or_insert_with(|| {
-                    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
-                });
+                first.get_or_insert_with(|| described(&error));
             }
         }));
         Ok(Self { adapter, info, device, queue, errors })
