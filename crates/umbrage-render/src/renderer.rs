@@ -18,7 +18,7 @@ use umbrage::core::fit::ShadowView;
 use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::{Combination, Filter, Storage};
-use umbrage::core::{Camera, DEPTH, Frustum, Light};
+use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
 use umbrage_scene::{Image, Instance, Reflectance, Scene};
 use wgpu::util::DeviceExt;
@@ -211,6 +211,8 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
         combination: options.settings.combination,
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
+        placed: scene.lights.iter().any(|l| l.light.kind != LightKind::Directional),
+        slide: !lights.slides.is_empty(),
         views: lights.view_of_light.clone(),
     }
 }

@@ -26,6 +26,10 @@ pub struct ShaderNeeds {
     pub metallic_roughness: bool,
     /// Does any surface answer by Lambert and Blinn?
     pub blinn: bool,
+    /// Has any light a place, or do all of them shine in parallel?
+    pub placed: bool,
+    /// Has any light a slide?
+    pub slide: bool,
     /// The map's view of each light.
     pub views: Vec<Option<usize>>,
 }
@@ -76,12 +80,15 @@ fn prelude(needs: &ShaderNeeds) -> String {
         None => "fn map_visibility(view: UmbrageView, kind: u32, p_world: vec3f) -> f32 { return 1.0; }\n"
             .to_owned(),
     };
-    let constants = format!(
-        "const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\nconst ANY_METALLIC_ROUGHNESS = {};\nconst ANY_BLINN = {};\n",
-        DEPTH.clear(),
-        needs.metallic_roughness,
-        needs.blinn,
-    );
+    let flags = [
+        ("ANY_METALLIC_ROUGHNESS", needs.metallic_roughness),
+        ("ANY_BLINN", needs.blinn),
+        ("ANY_PLACED", needs.placed),
+        ("ANY_SLIDE", needs.slide),
+    ];
+    let flags: String = flags.iter().map(|(name, on)| format!("const {name} = {on};\n")).collect();
+    let constants =
+        format!("const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n{flags}", DEPTH.clear());
     [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(&needs.views)].join("\n")
 }
 
@@ -105,7 +112,8 @@ pub fn all() -> Vec<(String, String)> {
         for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
                 let views = (0..lights).map(|i| (i % 2 == 0).then_some(i / 2)).collect();
-                let needs = ShaderNeeds { combination, metallic_roughness, blinn, views };
+                let (placed, slide) = (lights != 1, lights > 1);
+                let needs = ShaderNeeds { combination, metallic_roughness, blinn, placed, slide, views };
                 all.push((format!("mesh for {needs:?}"), mesh(&needs)));
                 all.push((format!("screen for {needs:?}"), screen(&needs)));
             }

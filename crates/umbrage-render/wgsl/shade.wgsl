@@ -20,20 +20,19 @@ struct Incoming {
 }
 
 fn incoming(light: Light, p_world: vec3f) -> Incoming {
-    if light.kind == DIRECTIONAL {
-        return Incoming(-light.direction, light.color);
+    var arriving = Incoming(-light.direction, light.color);
+    if ANY_PLACED && light.kind != DIRECTIONAL {
+        let offset = light.position - p_world;
+        let distance_m = length(offset);
+        arriving.towards = offset / max(distance_m, 1e-30);
+        let cone = umbrage_cone(dot(-arriving.towards, light.direction), light.cone_scale, light.cone_offset);
+        arriving.illuminance *= umbrage_falloff(distance_m, light.range_m) * select(1.0, cone, light.kind == SPOT);
     }
-    let offset = light.position - p_world;
-    let distance_m = length(offset);
-    let towards = offset / max(distance_m, 1e-30);
-    var lux = light.color * umbrage_falloff(distance_m, light.range_m);
-    if light.kind == SPOT {
-        lux *= umbrage_cone(dot(-towards, light.direction), light.cone_scale, light.cone_offset);
+    if ANY_SLIDE && light.slide >= 0 {
+        arriving.illuminance *=
+            umbrage_cookie(slides, slide_sampler, u32(light.slide), light.slide_from_world, p_world);
     }
-    if light.slide >= 0 {
-        lux *= umbrage_cookie(slides, slide_sampler, u32(light.slide), light.slide_from_world, p_world);
-    }
-    return Incoming(towards, lux);
+    return arriving;
 }
 
 const PI = 3.14159265359;
