@@ -106,13 +106,10 @@ struct Fragment {
 }
 
 // `front` is what the rasteriser says; a surface that may be seen from behind turns its normals to the viewer.
-fn plain_surface(p_world: vec3f, normal: vec3f, front: bool) -> Fragment {
+fn plain_surface(normal: vec3f, front: bool) -> Fragment {
     var s: Surface;
     let turn = select(1.0, -1.0, IS_DOUBLE_SIDED && !front);
     s.shading_normal = normalize(normal) * turn;
-    // Right-handed screen derivatives (y runs down) point away from the viewer.
-    let across = cross(dpdy(p_world), dpdx(p_world));
-    s.geometric_normal = across * inverseSqrt(max(dot(across, across), 1e-38));
     s.flags = material.flags;
     s.base_color = material.base_color.rgb;
     s.specular = material.specular;
@@ -121,7 +118,7 @@ fn plain_surface(p_world: vec3f, normal: vec3f, front: bool) -> Fragment {
 }
 
 fn full_surface(in: FullVertex, front: bool) -> Fragment {
-    var f = plain_surface(in.p_world, in.normal, front);
+    var f = plain_surface(in.normal, front);
     f.surface.base_color *= in.color.rgb;
     f.alpha *= in.color.a;
     if HAS_BASE_TEXTURE {
@@ -161,7 +158,7 @@ fn cut_out(alpha: f32) {
 
 @fragment
 fn fs_gbuffer_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4u {
-    return pack_surface(plain_surface(in.p_world, in.normal, front).surface);
+    return pack_surface(plain_surface(in.normal, front).surface);
 }
 
 @fragment
@@ -173,7 +170,7 @@ fn fs_gbuffer_full(in: FullVertex, @builtin(front_facing) front: bool) -> @locat
 
 @fragment
 fn fs_forward_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let f = plain_surface(in.p_world, in.normal, front);
+    let f = plain_surface(in.normal, front);
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }
 
