@@ -121,7 +121,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "X", default_value_t = 0.1, value_parser = specs::share, allow_negative_numbers = true, help_heading = "Picture")]
     pub fill: f32,
 
-    /// Factor from radiance to picture, or auto: white paper in full light gets 0.75
+    /// Factor from radiance to picture, or auto: white paper in full light is just white
     #[arg(long, value_name = "X", default_value = "auto", value_parser = specs::exposure, allow_negative_numbers = true, help_heading = "Picture")]
     pub exposure: specs::Exposure,
 

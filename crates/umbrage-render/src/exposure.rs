@@ -3,8 +3,8 @@
 use glam::Vec3;
 use umbrage::core::{Aabb, Light, LightKind};
 
-/// What a white, matte surface in full light gets in the picture, linear: leaves room for highlights.
-const WHITE: f32 = 0.75;
+/// What a white, matte surface in full light gets in the picture, linear: all that there is.
+const WHITE: f32 = 1.0;
 
 /// Factor from radiance to picture, so that a white matte surface at the best lit of `points_world` gets [`WHITE`].
 ///
