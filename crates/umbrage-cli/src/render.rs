@@ -147,7 +147,6 @@ fn report(
 }
 
 fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
-    let times: Vec<f64> = drawn.frames_ms.clone();
     let options = renderer.options();
     let maps = match renderer.map_format() {
         Some(format) => {
@@ -161,14 +160,17 @@ fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>,
         }
         None => String::new(),
     };
-    let median = if times.len() > 1 { format!("median of {} frames ", times.len()) } else { String::new() };
+    let time = match drawn.frames_ms.len() {
+        // The driver compiles shaders in it, so it says little of the next.
+        0 | 1 => format!("first frame {:.0} ms", json::median(&drawn.frames_ms)),
+        many => format!("{:.1} ms, the median of {many} frames", json::median(&drawn.frames_ms)),
+    };
     format!(
-        "{}: {} triangles, {}{maps}, on {}: {median}{:.2} ms\n{} view of {}x{} pixels written to {}\n",
+        "{}: {} triangles, {}{maps}, on {}: {time}\n{} view of {}x{} pixels written to {}\n",
         stage.scene.name,
         text::count(stage.scene.triangles()),
         options.settings.technique.id,
         gpu.info.name,
-        json::median(&times),
         options.view.id(),
         stage.size.x,
         stage.size.y,

@@ -1,6 +1,7 @@
 //! A technique as a list of passes: what is drawn where, over which clear, in which state.
 //!
-//! The passes that run are made from this list, so what `umbrage passes` prints is what happens.
+//! The passes that make shadows are recorded from this list, so what `umbrage passes` prints is what happens. How
+//! surfaces are lit is the renderer's own affair: the reference renderer draws them into a G-buffer first.
 
 use crate::DEPTH;
 use crate::technique::{Bias, Family, Settings, Storage};
@@ -118,7 +119,12 @@ impl std::fmt::Display for Pass {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let target = match self.target {
             Target::Map { storage, size_texel } => {
-                format!("{size_texel}x{size_texel} {}, the light's layer", storage.row().id)
+                let format = if storage == Storage::Auto {
+                    "of the adapter's best depth format"
+                } else {
+                    storage.row().id
+                };
+                format!("{size_texel}x{size_texel} {format}, the light's layer")
             }
             Target::Picture => "the picture and its depth".to_owned(),
         };
@@ -129,7 +135,9 @@ impl std::fmt::Display for Pass {
         };
         let draws = match self.draws {
             Draws::Casters => "casters, positions only; cut-out casters with their texture",
-            Draws::Surfaces => "surfaces with material and light, visibility looked up inline",
+            Draws::Surfaces => {
+                "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
+            }
         };
         let color = if self.color { "colour and depth" } else { "depth only" };
         writeln!(f, "{}{}", self.name, if self.per_light { " (one for each shadowed light)" } else { "" })?;

@@ -151,6 +151,12 @@ impl<'a> Renderer<'a> {
             usage: wgpu::BufferUsages::VERTEX,
         });
         gpu.check()?;
+        let mut warnings = lights.warnings;
+        if options.samples > 1 && !lit_at_once {
+            let id = options.view.id();
+            warnings
+                .push(format!("the view `{id}` has one sample a pixel; {} were asked for", options.samples));
+        }
         Ok(Self {
             gpu,
             material_of_mesh: scene.meshes.iter().map(|m| m.material).collect(),
@@ -167,7 +173,7 @@ impl<'a> Renderer<'a> {
             blended,
             views: lights.views,
             exposure,
-            warnings: lights.warnings,
+            warnings,
             options,
         })
     }

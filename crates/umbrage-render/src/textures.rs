@@ -162,8 +162,8 @@ impl Textures {
     }
 }
 
-/// The slides of all lights in one array: each as large as the largest, black around it would be wrong, so each is
-/// scaled to fill its layer.
+/// The slides of all lights in one array. A slide fills its light's cone whatever its shape, so each is scaled to the
+/// square layer.
 pub fn slides(device: &wgpu::Device, queue: &wgpu::Queue, images: &[&Image]) -> wgpu::TextureView {
     let side = images.iter().map(|i| i.width.max(i.height)).max().unwrap_or(1).clamp(1, 2048);
     let layers = images.len().max(1) as u32;

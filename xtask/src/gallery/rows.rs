@@ -46,7 +46,9 @@ pub const ROWS: &[Row] = &[
         text: "Planes turned from 0 to 89 degrees away from the light; none shadows another, so every dark spot is an \
                error (acne). Polygon offset by slope follows each plane, so its picture is white all over; a constant \
                does not. A uniform bias in the lookup matrix must be as large as the steepest plane needs, and then \
-               light leaks wherever a caster is closer to its receiver than that.",
+               light leaks wherever a caster is closer to its receiver than that. Measured against rays by \
+               `tests/oracle.rs` on `builtin:contact` with a map of 256x256: the least uniform bias without acne lets \
+               light leak into 34 of 12,414 sure pixels, the slope-scaled one into none.",
         pictures: &[
             picture(
                 "h3-none",
