@@ -6,6 +6,8 @@ use common::compare::{check, check_differs, differences};
 use common::scenes::{builtin, checker, cut_out, over_floor, sheet, sun_of, with_light};
 use common::{gpu, settings, shoot, shoot_with};
 use glam::{Mat4, Vec3};
+use umbrage_render::umbrage::core::technique::{Bias, Filter, Storage};
+use umbrage_render::umbrage::core::wgsl::assemble;
 use umbrage_render::umbrage::core::{Light, LightKind};
 use umbrage_render::{RenderOptions, View};
 use umbrage_scene::{AlphaMode, Material, Scene};
@@ -199,6 +201,24 @@ fn leaving_out_idle_casters_changes_no_picture() {
         assert_eq!(darker, 0, "{name}: a caster less made {darker} pixels darker");
         let lighter = all.v.iter().zip(&needed.v).filter(|(all, needed)| **needed > **all + 0.05).count();
         assert!(lighter < 30, "{name}: {lighter} pixels are lit that were not");
+    }
+}
+
+/// A row of a table without a golden of its own is a choice that nobody looked at.
+#[test]
+fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {
+    let golden = |name: String| {
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("goldens").join(format!("{name}.png"));
+        assert!(path.is_file(), "{} is missing", path.display());
+    };
+    Storage::ALL.iter().filter(|s| **s != Storage::Auto).for_each(|s| golden(s.row().id.to_owned()));
+    Bias::ALL.iter().for_each(|b| golden(format!("bias-{}", b.row().id)));
+    for filter in Filter::ALL {
+        golden(filter.row().id.to_owned());
+        let text = assemble(filter.row().modules).expect("modules of a filter");
+        let function = format!("fn umbrage_filter_{}(", filter.row().id);
+        assert!(text.contains(&function), "no module of {} has {function}", filter.row().id);
     }
 }
 

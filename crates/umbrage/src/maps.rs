@@ -78,10 +78,7 @@ impl ShadowMaps {
 
 /// The sampler that compares: nearest or linear, clamped to the edge, in the sense of [`umbrage_core::DEPTH`].
 pub fn comparison_sampler(device: &wgpu::Device, filter: umbrage_core::technique::Filter) -> wgpu::Sampler {
-    let mode = match filter {
-        umbrage_core::technique::Filter::Nearest => wgpu::FilterMode::Nearest,
-        umbrage_core::technique::Filter::Linear => wgpu::FilterMode::Linear,
-    };
+    let mode = if filter.blends_comparisons() { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("umbrage comparison"),
         mag_filter: mode,

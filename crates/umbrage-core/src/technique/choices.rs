@@ -176,6 +176,14 @@ impl Filter {
         }
     }
 
+    /// Does the comparison sampler blend the four nearest comparisons?
+    pub fn blends_comparisons(self) -> bool {
+        match self {
+            Self::Nearest => false,
+            Self::Linear => true,
+        }
+    }
+
     /// Comparisons for each lookup.
     pub fn taps(self) -> u32 {
         match self {
