@@ -89,7 +89,7 @@ pub struct SceneArgs {
     ///   outer=DEG           from the axis to where the cone ends. Default 45
     ///   inner=DEG           from the axis to where it begins to fade. Default 0.8 outer
     ///   range=M             where the light has faded to nothing. Default: never
-    ///   radius=M            of the shining sphere. Default 0: a point
+    ///   radius=M            of the shining sphere; no technique softens by it yet. Default 0
     ///   near=M far=M        planes of the shadow map. Default: fitted to the scene
     ///   cookie=FILE         a slide (png, jpg, webp) in front of a spot light
     ///

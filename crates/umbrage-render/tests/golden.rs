@@ -204,6 +204,24 @@ fn leaving_out_idle_casters_changes_no_picture() {
     }
 }
 
+/// Fits, bias and formats follow the scene: a thousand times larger or a hundred times smaller, V is the same.
+#[test]
+fn no_scale_changes_visibility() {
+    let Some(gpu) = gpu() else { return };
+    for name in ["torus", "contact", "columns", "tilt"] {
+        let shot = |scale: &str| {
+            let scene = builtin(&format!("{name}?scale={scale}"));
+            shoot(&gpu, &scene, settings("linear", &[("map_size", "512")]), View::Visibility, SIDE)
+        };
+        let plain = shot("1");
+        for scale in ["0.01", "1000"] {
+            // Rounding may move a sample across an edge.
+            let off = differences(&plain.rgba, &shot(scale).rgba).len();
+            assert!(off <= 12, "{name} at scale {scale}: {off} pixels differ");
+        }
+    }
+}
+
 /// A row of a table without a golden of its own is a choice that nobody looked at.
 #[test]
 fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {
