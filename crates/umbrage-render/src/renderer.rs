@@ -77,13 +77,7 @@ impl<'a> Renderer<'a> {
         let lit_at_once = matches!(options.view, View::Final | View::Light) && (options.samples > 1 || emits);
         let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
 
-        let lights_world: Vec<Light> = scene.lights.iter().map(|l| l.light).collect();
-        let bounds = scene.bounds();
-        let middle =
-            |i: &Instance| i.world_from_object.transform_point3(scene.meshes[i.mesh].bounds.center());
-        let middles = scene.instances.iter().map(middle);
-        let exposure =
-            options.exposure.unwrap_or_else(|| exposure::automatic(&lights_world, &bounds, middles));
+        let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let layouts = Layouts::new(&gpu.device);
         let geometry = Geometry::new(&gpu.device, scene);
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
@@ -129,22 +123,7 @@ impl<'a> Renderer<'a> {
         let slide_images: Vec<&Image> = lights.slides.iter().map(|i| &scene.images[*i]).collect();
         let frame_group =
             frame_group(gpu, &layouts, &frame, &lights, shadows.as_ref(), &options, &slide_images);
-        let gbuffer_group = targets.gbuffer.as_ref().map(|gbuffer| {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("gbuffer"),
-                layout: &layouts.gbuffer,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::TextureView(gbuffer),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::TextureView(&targets.depth),
-                    },
-                ],
-            })
-        });
+        let gbuffer_group = gbuffer_group(gpu, &layouts, &targets);
         let instances = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("instances"),
             contents: if instances.is_empty() { &[0; 48] } else { bytemuck::cast_slice(&instances) },
@@ -259,6 +238,26 @@ impl Eye {
             pad: 0,
         }
     }
+}
+
+/// The exposure that the scene's own lights and instances ask for.
+fn automatic_exposure(scene: &Scene) -> f32 {
+    let lights: Vec<Light> = scene.lights.iter().map(|l| l.light).collect();
+    let middle = |i: &Instance| i.world_from_object.transform_point3(scene.meshes[i.mesh].bounds.center());
+    exposure::automatic(&lights, &scene.bounds(), scene.instances.iter().map(middle))
+}
+
+/// Group 1 of the screen pipelines, where there is a G-buffer.
+fn gbuffer_group(gpu: &Gpu, layouts: &Layouts, targets: &Targets) -> Option<wgpu::BindGroup> {
+    let gbuffer = targets.gbuffer.as_ref()?;
+    Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("gbuffer"),
+        layout: &layouts.gbuffer,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(gbuffer) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&targets.depth) },
+        ],
+    }))
 }
 
 fn check_samples(gpu: &Gpu, asked: u32) -> Result<(), RenderError> {
