@@ -60,10 +60,13 @@ fn gpu_material(material: &Material, all_blinn: bool) -> GpuMaterial {
     let mut base_color = material.base_color;
     let (specular, gloss) = match material.reflectance {
         Reflectance::MetallicRoughness { metallic, roughness } if all_blinn => {
-            // Blinn's exponent that is as wide as GGX of that roughness (Karis 2013): 2 / alpha^2 - 2.
+            // Where a texture says which parts are metal, the factors say nothing: plain matte.
+            let textured = material.metallic_roughness_texture.is_some();
+            let (metallic, roughness) = if textured { (0.0, 0.7) } else { (metallic, roughness) };
+            // Blinn's exponent that is as wide as GGX of that roughness (Karis 2013), and the peak that keeps its energy.
             let alpha = (roughness * roughness).max(0.02);
             let shininess = (2.0 / (alpha * alpha) - 2.0).max(1.0);
-            let specular = Vec3::splat(0.04).lerp(base, metallic) * (shininess + 2.0).sqrt().min(8.0);
+            let specular = Vec3::splat(0.04).lerp(base, metallic) * ((shininess + 8.0) / 8.0);
             flags |= BLINN;
             base_color = (base * (1.0 - 0.7 * metallic)).extend(base_color.w);
             (specular.min(Vec3::ONE), gloss_of(shininess))

@@ -147,6 +147,18 @@ fn fill_keeps_some_diffuse_in_shadow() {
 }
 
 #[test]
+fn the_documents_shading() {
+    let scene = builtin("torus");
+    let Some(gpu) = gpu() else { return };
+    let shot = |all_blinn| {
+        let options = RenderOptions { all_blinn, ..RenderOptions::new(settings("linear", &[])) };
+        shoot_with(&gpu, &scene, 80, options)
+    };
+    check_differs("documents", &shot(false), "metallic-roughness");
+    check("documents", &shot(true));
+}
+
+#[test]
 fn mirrored_and_plain_closed_casters_throw_mirrored_shadows() {
     // A closed caster's back faces are culled; a mirroring transform turns them to the front.
     let torus = builtin("torus");
