@@ -7,6 +7,25 @@ use glam::{Mat4, Vec3, Vec4};
 /// How many lights a frame may have.
 pub const MAX_LIGHTS: usize = 16;
 
+/// Makes constants that Rust and the shaders share, and the list that is written into every shader.
+macro_rules! shader_constants {
+    ($($name:ident = $value:literal;)*) => {
+        $(pub const $name: u32 = $value;)*
+        /// Name and value of each.
+        pub const SHADER_CONSTANTS: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
+    };
+}
+
+shader_constants! {
+    // Kinds of a light.
+    DIRECTIONAL = 0;
+    POINT = 1;
+    SPOT = 2;
+    // Flags of a surface: answers by Lambert and Blinn; shows its base colour without light.
+    BLINN = 1;
+    UNLIT = 2;
+}
+
 /// Mirrors `Frame` of `wgsl/frame.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

@@ -1,6 +1,6 @@
 //! Lights on the GPU: each with its view, if it gets one, and what to tell the user when it does not.
 
-use crate::layout::{GpuLight, MAX_LIGHTS};
+use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit};
@@ -51,9 +51,9 @@ fn gpu_light(
     slide: Option<usize>,
 ) -> GpuLight {
     let (kind, inner_rad, outer_rad) = match light.kind {
-        LightKind::Directional => (0, 0.0, std::f32::consts::PI),
-        LightKind::Point => (1, 0.0, std::f32::consts::PI),
-        LightKind::Spot { inner_rad, outer_rad } => (2, inner_rad, outer_rad),
+        LightKind::Directional => (DIRECTIONAL, 0.0, std::f32::consts::PI),
+        LightKind::Point => (POINT, 0.0, std::f32::consts::PI),
+        LightKind::Spot { inner_rad, outer_rad } => (SPOT, inner_rad, outer_rad),
     };
     let cone_scale = 1.0 / (inner_rad.cos() - outer_rad.cos()).max(1e-3);
     GpuLight {

@@ -1,14 +1,11 @@
 //! Materials on the GPU: numbers, textures, and the pipeline variant that each needs.
 
-use crate::layout::GpuMaterial;
+use crate::layout::{BLINN, GpuMaterial, UNLIT};
 use crate::textures::{Encoding, Textures};
 use glam::{Vec3, Vec4};
 use std::num::NonZeroU64;
 use umbrage_scene::{AlphaMode, Material, Reflectance, Scene, TextureRef};
 use wgpu::util::DeviceExt;
-
-const BLINN: u32 = 1;
-const UNLIT: u32 = 2;
 
 /// Which variant of the mesh pipelines draws a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

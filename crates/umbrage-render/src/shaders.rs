@@ -1,6 +1,6 @@
 //! The renderer's shaders: library modules, the chosen filter, and the passes, joined as text.
 
-use crate::layout::MAX_LIGHTS;
+use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
 use umbrage::core::DEPTH;
 use umbrage::core::technique::Combination;
 use umbrage::core::wgsl::assemble;
@@ -87,8 +87,12 @@ fn prelude(needs: &ShaderNeeds) -> String {
         ("ANY_SLIDE", needs.slide),
     ];
     let flags: String = flags.iter().map(|(name, on)| format!("const {name} = {on};\n")).collect();
-    let constants =
-        format!("const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n{flags}", DEPTH.clear());
+    let shared: String =
+        SHADER_CONSTANTS.iter().map(|(name, value)| format!("const {name} = {value}u;\n")).collect();
+    let constants = format!(
+        "const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n{flags}{shared}",
+        DEPTH.clear()
+    );
     [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(&needs.views)].join("\n")
 }
 

@@ -30,8 +30,8 @@ pub enum Measure {
 pub struct Queries {
     stamps: Option<wgpu::QuerySet>,
     statistics: Option<wgpu::QuerySet>,
-    resolved: wgpu::Buffer,
-    read: wgpu::Buffer,
+    /// Where results are resolved to, and where they can be read; only when something is measured.
+    buffers: Option<(wgpu::Buffer, wgpu::Buffer)>,
     passes: u32,
     tick_ns: f64,
 }
@@ -58,16 +58,15 @@ impl Queries {
             })
         };
         use wgpu::BufferUsages as Usage;
-        Self {
-            stamps: (measure == Measure::Passes && gpu.has_timestamps())
-                .then(|| set("stamps", wgpu::QueryType::Timestamp, 2 * passes)),
-            statistics: (measure == Measure::Counts && gpu.has_statistics())
-                .then(|| set("statistics", wgpu::QueryType::PipelineStatistics(STATISTICS), passes)),
-            resolved: buffer("queries", Usage::QUERY_RESOLVE | Usage::COPY_SRC),
-            read: buffer("queries read", Usage::MAP_READ | Usage::COPY_DST),
-            passes,
-            tick_ns: f64::from(gpu.queue.get_timestamp_period()),
-        }
+        let stamps = (measure == Measure::Passes && gpu.has_timestamps())
+            .then(|| set("stamps", wgpu::QueryType::Timestamp, 2 * passes));
+        let statistics = (measure == Measure::Counts && gpu.has_statistics())
+            .then(|| set("statistics", wgpu::QueryType::PipelineStatistics(STATISTICS), passes));
+        let buffers = (stamps.is_some() || statistics.is_some()).then(|| {
+            let resolved = buffer("queries", Usage::QUERY_RESOLVE | Usage::COPY_SRC);
+            (resolved, buffer("queries read", Usage::MAP_READ | Usage::COPY_DST))
+        });
+        Self { stamps, statistics, buffers, passes, tick_ns: f64::from(gpu.queue.get_timestamp_period()) }
     }
 
     fn statistics_offset(passes: u32) -> u64 {
@@ -101,29 +100,22 @@ impl Queries {
 
     /// Records the copy of all results to where they can be read.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
+        let Some((resolved, read)) = &self.buffers else { return };
         if let Some(stamps) = &self.stamps {
-            encoder.resolve_query_set(stamps, 0..2 * self.passes, &self.resolved, 0);
+            encoder.resolve_query_set(stamps, 0..2 * self.passes, resolved, 0);
         }
         if let Some(statistics) = &self.statistics {
-            encoder.resolve_query_set(
-                statistics,
-                0..self.passes,
-                &self.resolved,
-                Self::statistics_offset(self.passes),
-            );
+            let offset = Self::statistics_offset(self.passes);
+            encoder.resolve_query_set(statistics, 0..self.passes, resolved, offset);
         }
-        if self.stamps.is_some() || self.statistics.is_some() {
-            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.read, 0, self.read.size());
-        }
+        encoder.copy_buffer_to_buffer(resolved, 0, read, 0, read.size());
     }
 
     /// Milliseconds and counts of each pass; `None` for what the adapter cannot tell.
     pub fn read(&self, gpu: &Gpu) -> Vec<(Option<f64>, Option<Statistics>)> {
         let nothing = vec![(None, None); self.passes as usize];
-        if self.stamps.is_none() && self.statistics.is_none() {
-            return nothing;
-        }
-        let Ok(bytes) = crate::readback::map(gpu, &self.read) else { return nothing };
+        let Some((_, read)) = &self.buffers else { return nothing };
+        let Ok(bytes) = crate::readback::map(gpu, read) else { return nothing };
         let number = |at: u64| {
             let at = at as usize;
             bytes.get(at..at + 8).map_or(0, |b| u64::from_le_bytes(b.try_into().unwrap_or_default()))

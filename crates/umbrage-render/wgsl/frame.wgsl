@@ -18,14 +18,11 @@ struct Frame {
     pad: u32,
 }
 
-const DIRECTIONAL = 0u;
-const POINT = 1u;
-const SPOT = 2u;
-
 struct Light {
     // Lookup matrix of the slide: the whole cone, whatever the map's projection is.
     slide_from_world: mat4x4f,
     position: vec3f,
+    // DIRECTIONAL, POINT or SPOT.
     kind: u32,
     direction: vec3f,
     // Metres, 0: endless.

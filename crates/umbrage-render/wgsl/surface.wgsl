@@ -1,8 +1,5 @@
 // A visible surface, and how it fits into one texel of the G-buffer.
 
-const BLINN = 1u;
-const UNLIT = 2u;
-
 struct Surface {
     // World space, interpolated and bent by the normal map. Unit length, towards the viewer's side.
     shading_normal: vec3f,

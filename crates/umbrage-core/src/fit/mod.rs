@@ -8,7 +8,7 @@ use crate::depth::DEPTH;
 use crate::frustum::Frustum;
 use crate::light::{Light, LightError, LightKind};
 use crate::lookup::{TextureOrigin, texture_from_world};
-use glam::{Mat4, UVec2};
+use glam::Mat4;
 
 /// One view of a light: all that a pass needs to draw a map and a shader to look it up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,9 +85,4 @@ pub fn fit(light: &Light, bounds_world: &[Aabb], options: &FitOptions) -> Result
         LightKind::Directional => directional::fit(light, bounds_world, options),
         LightKind::Point => Err(FitError::NoView("point")),
     }
-}
-
-/// The number of texels a map has.
-pub fn texels(size_texel: UVec2) -> u64 {
-    u64::from(size_texel.x) * u64::from(size_texel.y)
 }

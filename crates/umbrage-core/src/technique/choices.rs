@@ -183,14 +183,6 @@ impl Filter {
             Self::Linear => true,
         }
     }
-
-    /// Comparisons for each lookup.
-    pub fn taps(self) -> u32 {
-        match self {
-            Self::Nearest => 1,
-            Self::Linear => 4,
-        }
-    }
 }
 
 impl Storage {
