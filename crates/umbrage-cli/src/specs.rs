@@ -3,7 +3,7 @@
 use crate::fault::suggest;
 use glam::{UVec2, Vec3};
 use std::path::PathBuf;
-use umbrage_render::umbrage::core::{Light, LightKind};
+use umbrage_render::umbrage::core::{Light, LightKind, LightShape};
 
 /// `key=value`.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,8 +91,8 @@ pub struct LightSpec {
     pub outer_deg: Option<f32>,
     /// Metres.
     pub range_m: Option<f32>,
-    /// Metres.
-    pub radius_m: Option<f32>,
+    /// What shines.
+    pub shape: LightShape,
     /// Metres.
     pub near_m: Option<f32>,
     /// Metres.
@@ -102,7 +102,7 @@ pub struct LightSpec {
 }
 
 const CAMERA_KEYS: [&str; 6] = ["position", "target", "up", "fov", "near", "far"];
-const LIGHT_KEYS: [&str; 14] = [
+const LIGHT_KEYS: [&str; 17] = [
     "kind",
     "position",
     "target",
@@ -114,6 +114,9 @@ const LIGHT_KEYS: [&str; 14] = [
     "outer",
     "range",
     "radius",
+    "disc",
+    "rect",
+    "angle",
     "near",
     "far",
     "cookie",
@@ -295,7 +298,16 @@ pub fn light(text: &str) -> Result<LightSpec, String> {
             "inner" => zero_or_more(&value).map(|v| spec.inner_deg = Some(v)),
             "outer" => above_zero(&value).map(|v| spec.outer_deg = Some(v)),
             "range" => above_zero(&value).map(|v| spec.range_m = Some(v)),
-            "radius" => zero_or_more(&value).map(|v| spec.radius_m = Some(v)),
+            "radius" | "disc" | "rect" | "angle" => shape(key, &value).and_then(|shape| {
+                // A radius of 0 is a point.
+                let is_second = spec.shape != LightShape::Point && shape != LightShape::Point;
+                spec.shape = shape;
+                if is_second {
+                    Err("a light has one shape; keep one of radius, disc, rect, angle".into())
+                } else {
+                    Ok(())
+                }
+            }),
             "near" => above_zero(&value).map(|v| spec.near_m = Some(v)),
             "far" => above_zero(&value).map(|v| spec.far_m = Some(v)),
             _ if value.is_empty() => Err("name a picture".into()),
@@ -315,6 +327,24 @@ pub fn light(text: &str) -> Result<LightSpec, String> {
     };
     spec.check()?;
     Ok(spec)
+}
+
+/// What shines, by the key that says so.
+fn shape(key: &str, text: &str) -> Result<LightShape, String> {
+    match key {
+        "radius" => zero_or_more(text).map(|radius_m| match radius_m {
+            0.0 => LightShape::Point,
+            _ => LightShape::Sphere { radius_m },
+        }),
+        "disc" => above_zero(text).map(|radius_m| LightShape::Disc { radius_m }),
+        "angle" => above_zero(text).map(|degrees| LightShape::Sun { angle_rad: degrees.to_radians() }),
+        _ => {
+            let bad = || format!("`{}` is not width:height in metres", short(text));
+            let (width, height) = text.split_once(':').ok_or_else(bad)?;
+            let side = |text| above_zero(text).map_err(|_| bad());
+            Ok(LightShape::Rectangle { width_m: side(width)?, height_m: side(height)? })
+        }
+    }
 }
 
 fn kind(text: &str) -> Result<Kind, String> {
@@ -374,7 +404,7 @@ impl LightSpec {
             color: self.color.unwrap_or(Vec3::ONE),
             intensity,
             range_m: self.range_m,
-            radius_m: self.radius_m.unwrap_or(0.0),
+            shape: self.shape,
             near_m: self.near_m,
             far_m: self.far_m,
             ..Light::default()

@@ -73,7 +73,8 @@ fn a_light_in_full() {
     assert_eq!(spec.cookie, Some(PathBuf::from("a,b.png")));
     let light = spec.resolve(Vec3::ONE, 2.0);
     assert!(close(light.direction_world, [0.0, -1.0, 0.0]) && close(light.position_world, [0.0, 4.0, 0.0]));
-    assert_eq!((light.intensity, light.range_m, light.radius_m), (50.0, Some(9.0), 0.1));
+    assert_eq!((light.intensity, light.range_m), (50.0, Some(9.0)));
+    assert_eq!(light.shape, LightShape::Sphere { radius_m: 0.1 });
     assert_eq!((light.near_m, light.far_m), (Some(1.0), Some(8.0)));
     let LightKind::Spot { inner_rad, outer_rad } = light.kind else { panic!() };
     assert!((inner_rad.to_degrees() - 10.0).abs() < 1e-4 && (outer_rad.to_degrees() - 20.0).abs() < 1e-4);
@@ -119,6 +120,13 @@ fn bad_lights() {
         ("near=2,far=1", "below far"),
         ("range=0", "above 0"),
         ("radius=-1", "0 or more"),
+        ("disc=0", "above 0"),
+        ("rect=2", "width:height"),
+        ("rect=2:0", "width:height"),
+        ("radius=1,rect=1:1", "one shape"),
+        ("angle=0.5", "only a directional light"),
+        ("kind=directional,angle=180", "below 180"),
+        ("kind=directional,radius=1", "angle instead"),
         ("cookie=", "name a picture"),
         ("outer=20,outer=30", "twice"),
     ] {

@@ -1,7 +1,7 @@
 //! Casters that cannot shadow anything, and so need not be drawn.
 
 use crate::bounds::Aabb;
-use crate::light::{Light, LightKind};
+use crate::light::{Light, LightKind, LightShape};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
 /// Can a flat caster shadow none of the receivers?
@@ -20,7 +20,12 @@ pub fn flat_caster_is_idle(
         LightKind::Directional => plane_world.xyz().dot(-light.direction_world),
         _ => plane_world.dot(light.position_world.extend(1.0)),
     };
-    let least = if light.kind == LightKind::Directional { 0.0 } else { tolerance_m + light.radius_m };
+    // Part of a wide light may lie on the plane's other side.
+    let least = match (light.kind, light.shape) {
+        (LightKind::Directional, LightShape::Sun { angle_rad }) => (0.5 * angle_rad).sin(),
+        (LightKind::Directional, _) => 0.0,
+        _ => tolerance_m + light.shape.bounding_radius_m(),
+    };
     if towards_light.abs() <= least {
         return false;
     }
@@ -59,7 +64,12 @@ mod tests {
         assert!(flat_caster_is_idle(&below, FLOOR, [crate_at(-1.0)], 1e-4));
         let inside = Light::default().aimed(Vec3::X * 5.0, Vec3::ZERO);
         assert!(!flat_caster_is_idle(&inside, FLOOR, [crate_at(0.0)], 1e-4));
-        let half_below = Light { radius_m: 6.0, ..Light::default().aimed(Vec3::Y * 5.0, Vec3::ZERO) };
+        let lamp = Light::default().aimed(Vec3::Y * 5.0, Vec3::ZERO);
+        let half_below = Light { shape: LightShape::Sphere { radius_m: 6.0 }, ..lamp };
         assert!(!flat_caster_is_idle(&half_below, FLOOR, [crate_at(0.0)], 1e-4));
+        let low = Light { kind: LightKind::Directional, ..lamp.aimed(Vec3::new(5.0, 0.02, 0.0), Vec3::ZERO) };
+        assert!(flat_caster_is_idle(&low, FLOOR, [crate_at(0.0)], 1e-4));
+        let setting = Light { shape: LightShape::Sun { angle_rad: 0.01 }, ..low };
+        assert!(!flat_caster_is_idle(&setting, FLOOR, [crate_at(0.0)], 1e-4));
     }
 }

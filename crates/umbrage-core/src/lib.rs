@@ -21,4 +21,4 @@ pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
 pub use depth::{DEPTH, DepthConvention};
 pub use frustum::{Frustum, cone_may_see};
-pub use light::{Light, LightError, LightKind};
+pub use light::{Light, LightError, LightKind, LightShape};

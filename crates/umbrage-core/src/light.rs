@@ -29,6 +29,93 @@ impl LightKind {
     }
 }
 
+/// What shines: the surface that light comes from. A point throws hard shadows, everything else soft ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LightShape {
+    /// A mathematical point, or light that is exactly parallel.
+    #[default]
+    Point,
+    /// A sphere around the light's place.
+    Sphere {
+        /// Metres, above 0.
+        radius_m: f32,
+    },
+    /// A disc across the light's direction.
+    Disc {
+        /// Metres, above 0.
+        radius_m: f32,
+    },
+    /// A rectangle across the light's direction; its height runs along the light's up.
+    Rectangle {
+        /// Metres, above 0.
+        width_m: f32,
+        /// Metres, above 0.
+        height_m: f32,
+    },
+    /// The disc of a sun, as seen from anywhere; for directional lights only.
+    Sun {
+        /// Across the whole disc, radians, above 0 and below `PI`. That of the real sun is 0.0093 (0.53 degrees).
+        angle_rad: f32,
+    },
+}
+
+impl LightShape {
+    /// No point of the shape is farther than this from the light's place. 0 for a point and for a sun.
+    pub fn bounding_radius_m(&self) -> f32 {
+        match *self {
+            Self::Point | Self::Sun { .. } => 0.0,
+            Self::Sphere { radius_m } | Self::Disc { radius_m } => radius_m,
+            Self::Rectangle { width_m, height_m } => 0.5 * width_m.hypot(height_m),
+        }
+    }
+
+    /// The same shape with every length multiplied; angles stay.
+    pub fn scaled(self, factor: f32) -> Self {
+        match self {
+            Self::Point | Self::Sun { .. } => self,
+            Self::Sphere { radius_m } => Self::Sphere { radius_m: radius_m * factor },
+            Self::Disc { radius_m } => Self::Disc { radius_m: radius_m * factor },
+            Self::Rectangle { width_m, height_m } => {
+                Self::Rectangle { width_m: width_m * factor, height_m: height_m * factor }
+            }
+        }
+    }
+
+    fn check(&self, kind: &LightKind) -> Result<(), LightError> {
+        let parallel = *kind == LightKind::Directional;
+        let refuse = |what, value: f32, allowed| {
+            Err(LightError::OutOfRange { what, value: value.to_string(), allowed })
+        };
+        let is_length = |x: f32| x.is_finite() && x > 0.0;
+        match *self {
+            Self::Point => Ok(()),
+            Self::Sun { angle_rad } if !(angle_rad > 0.0 && angle_rad < std::f32::consts::PI) => {
+                refuse("angle", angle_rad.to_degrees(), "above 0 and below 180 degrees")
+            }
+            Self::Sun { .. } if parallel => Ok(()),
+            Self::Sun { angle_rad } => {
+                refuse("angle", angle_rad.to_degrees(), "left out: only a directional light has one")
+            }
+            Self::Sphere { radius_m } | Self::Disc { radius_m } if !is_length(radius_m) => {
+                refuse("radius", radius_m, "finite and above 0")
+            }
+            Self::Rectangle { width_m, .. } if !is_length(width_m) => {
+                refuse("width", width_m, "finite and above 0")
+            }
+            Self::Rectangle { height_m, .. } if !is_length(height_m) => {
+                refuse("height", height_m, "finite and above 0")
+            }
+            Self::Sphere { radius_m: size } | Self::Disc { radius_m: size } if parallel => {
+                refuse("radius", size, "left out: a directional light has an angle instead")
+            }
+            Self::Rectangle { width_m, .. } if parallel => {
+                refuse("width", width_m, "left out: a directional light has an angle instead")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// A light in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
@@ -46,8 +133,8 @@ pub struct Light {
     pub intensity: f32,
     /// Distance at which the light fades to nothing, metres. `None`: it never does.
     pub range_m: Option<f32>,
-    /// Radius of the shining sphere, metres. 0 is a mathematical point.
-    pub radius_m: f32,
+    /// What shines. Intensity and falloff stay those of the light's middle. Default: a point.
+    pub shape: LightShape,
     /// Near plane of the shadow map, metres from the light. `None`: fitted to the casters.
     pub near_m: Option<f32>,
     /// Far plane of the shadow map, metres from the light. `None`: fitted to casters and receivers.
@@ -65,7 +152,7 @@ impl Default for Light {
             color: Vec3::ONE,
             intensity: 100.0,
             range_m: None,
-            radius_m: 0.0,
+            shape: LightShape::Point,
             near_m: None,
             far_m: None,
         }
@@ -119,9 +206,7 @@ impl Light {
         if !(self.intensity.is_finite() && self.intensity >= 0.0) {
             return refuse("intensity", self.intensity.to_string(), "finite and 0 or more");
         }
-        if !(self.radius_m.is_finite() && self.radius_m >= 0.0) {
-            return refuse("radius", self.radius_m.to_string(), "finite and 0 or more");
-        }
+        self.shape.check(&self.kind)?;
         for (what, value) in [("range", self.range_m), ("near", self.near_m), ("far", self.far_m)] {
             if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
                 return refuse(what, value.to_string(), "finite and above 0");
@@ -200,7 +285,14 @@ mod tests {
             (Light { direction_world: Vec3::ZERO, ..good }, "direction"),
             (Light { color: Vec3::splat(-1.0), ..good }, "color"),
             (Light { intensity: f32::INFINITY, ..good }, "intensity"),
-            (Light { radius_m: -1.0, ..good }, "radius"),
+            (Light { shape: LightShape::Sphere { radius_m: -1.0 }, ..good }, "radius"),
+            (Light { shape: LightShape::Disc { radius_m: f32::NAN }, ..good }, "radius"),
+            (Light { shape: LightShape::Rectangle { width_m: 1.0, height_m: 0.0 }, ..good }, "height"),
+            (Light { shape: LightShape::Sun { angle_rad: 0.01 }, ..good }, "angle"),
+            (
+                Light { kind: LightKind::Directional, shape: LightShape::Sphere { radius_m: 1.0 }, ..good },
+                "radius",
+            ),
             (Light { range_m: Some(0.0), ..good }, "range"),
             (Light { near_m: Some(2.0), far_m: Some(1.0), ..good }, "near"),
             (Light { kind: spot(0.0, 2.0), ..good }, "outer cone"),

@@ -123,7 +123,7 @@ fn scale_by(scene: &mut Scene, scale: f32) {
     }
     for SceneLight { light, .. } in &mut scene.lights {
         light.position_world *= scale;
-        light.radius_m *= scale;
+        light.shape = light.shape.scaled(scale);
         if light.kind != LightKind::Directional {
             light.intensity *= scale * scale;
         }
