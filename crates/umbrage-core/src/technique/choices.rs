@@ -176,6 +176,13 @@ impl Filter {
         }
     }
 
+    /// Lookups of the map for each lit pixel; one that the hardware blends from four texels counts once.
+    pub fn taps(self) -> u32 {
+        match self {
+            Self::Nearest | Self::Linear => 1,
+        }
+    }
+
     /// Does the comparison sampler blend the four nearest comparisons?
     pub fn blends_comparisons(self) -> bool {
         match self {

@@ -84,6 +84,9 @@ pub(super) fn suggest<'a>(asked: &str, known: impl Iterator<Item = &'a str>) -> 
 }
 
 impl Settings {
+    /// The keys that name a table of choices, in the order of [`Combination::rows`].
+    pub const CHOICES: [&str; 4] = ["storage", "projection", "bias", "filter"];
+
     /// The technique `id` with `key=value` pairs over its defaults. Choices count before parameters, whatever their
     /// order.
     ///
@@ -96,7 +99,7 @@ impl Settings {
         let technique = find(id)?;
         let mut settings = Self { technique, combination: technique.combination, set: Vec::new() };
         let (choices, params): (Vec<_>, Vec<_>) =
-            pairs.into_iter().partition(|(key, _)| CHOICES.contains(key));
+            pairs.into_iter().partition(|(key, _)| Self::CHOICES.contains(key));
         for (i, (key, value)) in choices.iter().enumerate() {
             if choices[..i].iter().any(|(other, _)| other == key) {
                 return Err(SettingError::Twice { key: (*key).to_owned() });
@@ -136,7 +139,7 @@ impl Settings {
     fn unknown_key(&self, key: &str) -> SettingError {
         let mut known: Vec<&str> = self.params().map(|p| p.name).collect();
         if self.combination.is_some() {
-            known.extend(CHOICES);
+            known.extend(Self::CHOICES);
         }
         SettingError::UnknownKey {
             technique: self.technique.id,
@@ -193,9 +196,6 @@ impl Settings {
         Ok(())
     }
 }
-
-/// The keys that name a table of choices.
-const CHOICES: [&str; 4] = ["storage", "projection", "bias", "filter"];
 
 #[cfg(test)]
 mod tests {

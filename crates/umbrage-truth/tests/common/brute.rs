@@ -1,7 +1,7 @@
 //! The oracle: visibility by rays in double precision, every triangle tried. It shares nothing with fits, maps or WGSL.
 
 use glam::DVec3;
-use umbrage_render::umbrage::core::{Camera, Light, LightKind, Projection};
+use umbrage_core::{Camera, Light, LightKind, Projection};
 use umbrage_scene::Scene;
 
 struct Triangle {
@@ -150,36 +150,4 @@ pub fn truth(scene: &Scene, light: &Light, side: u32) -> Vec<Option<bool>> {
     });
     assert_eq!(rows.len(), (side * side) as usize);
     rows
-}
-
-/// Errors that no resolution explains: pixels farther than `reach` from any change of the truth.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Errors {
-    /// Receivers that are sure.
-    pub sure: usize,
-    /// Lit in truth, darkened.
-    pub acne: usize,
-    /// Shadowed in truth, brightened.
-    pub leak: usize,
-}
-
-/// Compares V with the truth.
-pub fn errors(truth: &[Option<bool>], v: &[f32], side: u32, reach: i64) -> Errors {
-    let side = i64::from(side);
-    let at = |x: i64, y: i64| {
-        ((0..side).contains(&x) && (0..side).contains(&y)).then(|| truth[(y * side + x) as usize])
-    };
-    let mut errors = Errors::default();
-    for (i, (truth, v)) in truth.iter().zip(v).enumerate() {
-        let (x, y) = (i as i64 % side, i as i64 / side);
-        let Some(lit) = *truth else { continue };
-        let around = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
-        if !around.into_iter().all(|(dx, dy)| at(x + dx, y + dy).is_none_or(|other| other == Some(lit))) {
-            continue;
-        }
-        errors.sure += 1;
-        errors.acne += usize::from(lit && *v < 0.95);
-        errors.leak += usize::from(!lit && *v > 0.05);
-    }
-    errors
 }

@@ -1,0 +1,176 @@
+//! The scene ready for rays: a hierarchy of boxes over all its triangles.
+
+use crate::packet::{LANES, Mask, Packet};
+use crate::triangles::{Tag, Triangles};
+use crate::{TruthError, surface, walk};
+use glam::{DVec3, Vec3};
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use umbrage_scene::Scene;
+
+/// Boxes are larger than their triangles by this share of the scene. Box tests run in single precision; with rays that
+/// start within [`FAR_START`] extents their error stays below 40 of its steps, 2.4e-6.
+const BOX_MARGIN: f32 = 4e-6;
+/// Rays from farther away, in extents of the scene, start where they come near it instead.
+const FAR_START: f64 = 4.0;
+
+/// A ray. Distances along it are metres, because `way` has unit length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts, world space, metres.
+    pub origin_world: DVec3,
+    /// Where it goes; unit length.
+    pub way: DVec3,
+    /// What is nearer than this does not count, metres.
+    pub from_m: f64,
+    /// What is farther than this does not count, metres; may be infinite.
+    pub to_m: f64,
+}
+
+/// What a ray of sight found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Metres from the ray's origin.
+    pub distance_m: f64,
+    /// Which triangle, in the order of [`Triangles`]' own lists.
+    pub slot: u32,
+}
+
+/// A scene that rays can be traced through.
+///
+/// Geometry is kept in single precision, as the renderer has it, relative to the scene's middle; intersections are found
+/// in double precision. So nothing needs an epsilon but the scene's own rounding, see [`Rays::offset_m`].
+#[derive(Debug)]
+pub struct Rays<'a> {
+    scene: &'a Scene,
+    pub(crate) triangles: Triangles,
+    pub(crate) nodes: Vec<Bvh2Node>,
+}
+
+/// Nodes that are still to be visited, each with the rays that reach it. Kept between rays to spare allocations.
+#[derive(Debug, Default)]
+pub struct Stack(pub(crate) Vec<(u32, Mask)>);
+
+impl<'a> Rays<'a> {
+    /// Builds the hierarchy, on all cores.
+    ///
+    /// # Errors
+    /// [`TruthError::TooManyTriangles`].
+    pub fn new(scene: &'a Scene) -> Result<Self, TruthError> {
+        let mut triangles = Triangles::new(scene)?;
+        if triangles.corners.is_empty() {
+            return Ok(Self { scene, triangles, nodes: Vec::new() });
+        }
+        let margin = Vec3::splat(BOX_MARGIN * triangles.extent_m.max(f32::MIN_POSITIVE));
+        let boxes: Vec<Aabb> = triangles
+            .corners
+            .iter()
+            .map(|[a, b, c]| {
+                let (min, max) = (a.min(*b).min(*c) - margin, a.max(*b).max(*c) + margin);
+                Aabb { min: min.into(), max: max.into() }
+            })
+            .collect();
+        let built = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut std::time::Duration::default());
+        drop(boxes);
+        // In the order of the leaves, so that a leaf's triangles lie side by side.
+        let order = &built.primitive_indices;
+        triangles.corners = order.iter().map(|i| triangles.corners[*i as usize]).collect();
+        triangles.tags = order.iter().map(|i| triangles.tags[*i as usize]).collect();
+        let mut nodes = built.nodes;
+        nodes.shrink_to_fit();
+        Ok(Self { scene, triangles, nodes })
+    }
+
+    /// Triangles that rays can hit.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.corners.len()
+    }
+
+    /// What the triangles and their hierarchy take, bytes. The scene itself is not counted.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&self.nodes[..])
+            + size_of_val(&self.triangles.corners[..])
+            + size_of_val(&self.triangles.tags[..])
+            + size_of_val(&self.triangles.first_of_instance[..])
+    }
+
+    /// How far off a surface a ray to the light starts, metres: what single-precision vertices may be off at that place,
+    /// four steps of the largest coordinate that went into them. So two coincident surfaces of different meshes do not
+    /// shadow each other, at any scale, and nothing that the scene can resolve is passed over.
+    pub fn offset_m(&self) -> f64 {
+        4.0 * f64::from(f32::EPSILON) * f64::from(self.triangles.magnitude_m)
+    }
+
+    /// Half the edge of the box around all triangles, metres; never 0.
+    pub fn extent_m(&self) -> f64 {
+        f64::from(self.triangles.extent_m.max(f32::MIN_POSITIVE))
+    }
+
+    /// Unit normal of a triangle's front.
+    pub fn normal(&self, slot: u32) -> DVec3 {
+        let [a, b, c] = self.triangles.corners[slot as usize].map(Vec3::as_dvec3);
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// Index of the instance that a triangle belongs to.
+    pub fn instance(&self, slot: u32) -> usize {
+        self.triangles.origin_of(self.triangles.tags[slot as usize]).0
+    }
+
+    /// Puts a ray into a lane; the answer's distances are longer by what is returned.
+    fn put(&self, packet: &mut Packet, lane: usize, ray: &Ray) -> f64 {
+        let origin = ray.origin_world - self.triangles.center_world;
+        let far_m = FAR_START * self.extent_m();
+        let skipped =
+            if origin.length_squared() > far_m * far_m { origin.length() - 0.5 * far_m } else { 0.0 };
+        packet.set(lane, origin + ray.way * skipped, ray.way, ray.from_m - skipped, ray.to_m - skipped);
+        skipped
+    }
+
+    /// What up to eight rays of sight meet first: surfaces that are mixed by alpha are looked through, and so are the backs
+    /// of single-sided ones and the holes of cut-outs.
+    pub fn nearest(&self, rays: &[Ray], stack: &mut Stack) -> [Option<Found>; LANES] {
+        let mut packet = Packet::empty();
+        let mut skipped = [0.0; LANES];
+        for (lane, ray) in rays.iter().take(LANES).enumerate() {
+            skipped[lane] = self.put(&mut packet, lane, ray);
+        }
+        let mut found = [None; LANES];
+        walk::find_nearest(self, &mut packet, &mut found, stack);
+        for (found, skipped) in found.iter_mut().zip(skipped) {
+            if let Some(found) = found {
+                found.distance_m += skipped;
+            }
+        }
+        found
+    }
+
+    /// The share of light, for each colour, that passes along up to eight rays.
+    pub fn light_through(&self, rays: &[Ray], stack: &mut Stack) -> [Vec3; LANES] {
+        let mut packet = Packet::empty();
+        for (lane, ray) in rays.iter().take(LANES).enumerate() {
+            self.put(&mut packet, lane, ray);
+        }
+        let mut light = [Vec3::ONE; LANES];
+        walk::pass_light(self, &mut packet, &mut light, stack);
+        light
+    }
+
+    /// The first thing that takes light from a ray.
+    pub fn blocker(&self, ray: &Ray, stack: &mut Stack) -> Option<Found> {
+        let mut packet = Packet::empty();
+        let skipped = self.put(&mut packet, 0, ray);
+        let mut nearest = None;
+        walk::find_blocker(self, &mut packet, &mut nearest, stack);
+        nearest.map(|found: Found| Found { distance_m: found.distance_m + skipped, ..found })
+    }
+
+    /// What a surface lets through where it was hit.
+    #[inline(never)]
+    pub(crate) fn pierced(&self, tag: Tag, u: f64, v: f64) -> Vec3 {
+        let (instance, triangle) = self.triangles.origin_of(tag);
+        surface::light_through(self.scene, instance, triangle, u, v)
+    }
+}

@@ -1,0 +1,193 @@
+//! Walks of packets through the hierarchy: what is nearest, how much light passes, what blocks it. Each exists once, for any
+//! way to test boxes and triangles, and is made for the instructions that this machine has.
+
+use crate::hierarchy::{Found, Rays, Stack};
+use crate::packet::{Hits, LANES, Mask, Packet, lanes};
+use glam::Vec3;
+use std::ops::Range;
+
+/// How rays are tested against a box and against a triangle.
+trait Box8: Fn(&Packet, Vec3, Vec3, Mask) -> Mask {}
+impl<T: Fn(&Packet, Vec3, Vec3, Mask) -> Mask> Box8 for T {}
+trait Triangle8: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Hits {}
+impl<T: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Hits> Triangle8 for T {}
+
+/// Visits all leaves that rays of the packet reach; `visit` ends rays by taking them out of `packet.active` or by
+/// shortening them.
+#[inline(always)]
+fn walk(
+    rays: &Rays<'_>,
+    packet: &mut Packet,
+    stack: &mut Stack,
+    reach_box: impl Box8,
+    mut visit: impl FnMut(&mut Packet, Mask, Range<usize>),
+) {
+    let stack = &mut stack.0;
+    stack.clear();
+    if !rays.nodes.is_empty() {
+        stack.push((0, packet.active));
+    }
+    while let Some((index, mask)) = stack.pop() {
+        let mask = mask & packet.active;
+        if mask == 0 {
+            continue;
+        }
+        let node = &rays.nodes[index as usize];
+        if node.prim_count > 0 {
+            let first = node.first_index as usize;
+            visit(packet, mask, first..first + node.prim_count as usize);
+            if packet.active == 0 {
+                return;
+            }
+            continue;
+        }
+        let (left, right) = (node.first_index, node.first_index + 1);
+        let (l, r) = (&rays.nodes[left as usize], &rays.nodes[right as usize]);
+        let in_left = (left, reach_box(packet, l.min, l.max, mask));
+        let in_right = (right, reach_box(packet, r.min, r.max, mask));
+        // The nearer one last, so that it is visited first.
+        let left_first = packet.meets_first(l.min + l.max, r.min + r.max);
+        let (near, far) = if left_first { (in_left, in_right) } else { (in_right, in_left) };
+        if far.1 != 0 {
+            stack.push(far);
+        }
+        if near.1 != 0 {
+            stack.push(near);
+        }
+    }
+}
+
+#[inline(always)]
+fn find_nearest_by(
+    rays: &Rays<'_>,
+    packet: &mut Packet,
+    found: &mut [Option<Found>; LANES],
+    stack: &mut Stack,
+    reach_box: impl Box8,
+    hit_triangle: impl Triangle8,
+) {
+    walk(rays, packet, stack, reach_box, |packet, mask, slots| {
+        for slot in slots {
+            let tag = rays.triangles.tags[slot];
+            if tag.is_blended() {
+                continue;
+            }
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot], !tag.is_double_sided(), mask);
+            for lane in lanes(hits.mask) {
+                let hole = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
+                if tag.is_pierceable() && hole() {
+                    continue;
+                }
+                packet.end_at(lane, hits.t[lane]);
+                found[lane] = Some(Found { distance_m: hits.t[lane], slot: slot as u32 });
+            }
+        }
+    });
+}
+
+#[inline(always)]
+fn pass_light_by(
+    rays: &Rays<'_>,
+    packet: &mut Packet,
+    light: &mut [Vec3; LANES],
+    stack: &mut Stack,
+    reach_box: impl Box8,
+    hit_triangle: impl Triangle8,
+) {
+    walk(rays, packet, stack, reach_box, |packet, mask, slots| {
+        for slot in slots {
+            let tag = rays.triangles.tags[slot];
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot], false, mask & packet.active);
+            if hits.mask == 0 {
+                continue;
+            }
+            if !tag.is_pierceable() {
+                packet.active &= !hits.mask;
+                lanes(hits.mask).for_each(|lane| light[lane] = Vec3::ZERO);
+                continue;
+            }
+            for lane in lanes(hits.mask) {
+                light[lane] *= rays.pierced(tag, hits.u[lane], hits.v[lane]);
+                if light[lane] == Vec3::ZERO {
+                    packet.active &= !(1 << lane);
+                }
+            }
+        }
+    });
+}
+
+#[inline(always)]
+fn find_blocker_by(
+    rays: &Rays<'_>,
+    packet: &mut Packet,
+    nearest: &mut Option<Found>,
+    stack: &mut Stack,
+    reach_box: impl Box8,
+    hit_triangle: impl Triangle8,
+) {
+    walk(rays, packet, stack, reach_box, |packet, mask, slots| {
+        for slot in slots {
+            let tag = rays.triangles.tags[slot];
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot], false, mask);
+            for lane in lanes(hits.mask) {
+                let passes = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
+                if tag.is_pierceable() && passes() {
+                    continue;
+                }
+                packet.end_at(lane, hits.t[lane]);
+                *nearest = Some(Found { distance_m: hits.t[lane], slot: slot as u32 });
+            }
+        }
+    });
+}
+
+/// Makes a walk for AVX2 and for machines without it, and the function that chooses.
+macro_rules! for_this_machine {
+    ($(#[$doc:meta])* $name:ident, $by:ident, $out:ty) => {
+        $(#[$doc])*
+        pub fn $name(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
+            #[cfg(target_arch = "x86_64")]
+            {
+                use crate::packet_avx2::{hit_triangle, reach_box};
+
+                #[target_feature(enable = "avx2")]
+                fn avx2(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
+                    $by(
+                        rays,
+                        packet,
+                        out,
+                        stack,
+                        |p: &Packet, min, max, mask| reach_box(p, min, max, mask),
+                        |p: &Packet, corners: &[Vec3; 3], front, mask| hit_triangle(p, corners, front, mask),
+                    );
+                }
+
+                if is_x86_feature_detected!("avx2") {
+                    // SAFETY: the machine was asked and has what the function is compiled for.
+                    #[allow(unsafe_code)]
+                    return unsafe { avx2(rays, packet, out, stack) };
+                }
+            }
+            $by(rays, packet, out, stack, Packet::reach_box, Packet::hit_triangle);
+        }
+    };
+}
+
+for_this_machine!(
+    /// What each ray of sight meets first.
+    find_nearest,
+    find_nearest_by,
+    [Option<Found>; LANES]
+);
+for_this_machine!(
+    /// Multiplies `light` by what passes along each ray.
+    pass_light,
+    pass_light_by,
+    [Vec3; LANES]
+);
+for_this_machine!(
+    /// The first thing that takes all light.
+    find_blocker,
+    find_blocker_by,
+    Option<Found>
+);
