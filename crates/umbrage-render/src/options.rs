@@ -1,6 +1,7 @@
 //! What a picture should be.
 
 use glam::{UVec2, Vec3};
+use std::sync::Arc;
 use umbrage::core::technique::Settings;
 
 /// What the picture shows.
@@ -86,6 +87,17 @@ pub struct RenderOptions {
     /// Draw every caster into the maps, also those that can be shown to shadow nothing. Costs time and changes no
     /// picture but those of the maps themselves, which always have them all. Default false.
     pub all_casters: bool,
+    /// V that was found elsewhere (by rays, say), in place of any technique's. Default none.
+    pub given: Option<Arc<GivenVisibility>>,
+}
+
+/// V of each light for each pixel, rows from the top; red, green and blue apart, because light may be coloured on its way.
+///
+/// Surfaces that are mixed by alpha over a pixel take the V of what is behind them: there is one a pixel.
+#[derive(Clone, Debug, Default)]
+pub struct GivenVisibility {
+    /// One list for each light, as many as the scene has and a picture can have.
+    pub of_light: Vec<Vec<Vec3>>,
 }
 
 impl RenderOptions {
@@ -103,6 +115,7 @@ impl RenderOptions {
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
             all_casters: false,
+            given: None,
         }
     }
 }

@@ -3,6 +3,22 @@
 use std::io::Write;
 use std::path::Path;
 
+/// An RGBA picture as the bytes of a PNG file.
+///
+/// # Errors
+/// What the encoder says; the number of bytes must be `4 * width * height`.
+pub fn encode_png(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new_with_quality(
+        &mut bytes,
+        image::codecs::png::CompressionType::Fast,
+        image::codecs::png::FilterType::Adaptive,
+    );
+    image::ImageEncoder::write_image(encoder, rgba, width, height, image::ExtendedColorType::Rgba8)
+        .map_err(|e| e.to_string())?;
+    Ok(bytes)
+}
+
 /// Writes an RGBA picture as PNG: first beside its place, then moved there, so that a failure leaves nothing behind and
 /// never half a file.
 ///
@@ -13,14 +29,7 @@ pub fn write_png(path: &Path, width: u32, height: u32, rgba: &[u8]) -> Result<()
     if path.is_dir() {
         return Err(refused(&"it is a folder; name a .png file in it"));
     }
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new_with_quality(
-        &mut bytes,
-        image::codecs::png::CompressionType::Fast,
-        image::codecs::png::FilterType::Adaptive,
-    );
-    image::ImageEncoder::write_image(encoder, rgba, width, height, image::ExtendedColorType::Rgba8)
-        .map_err(|e| refused(&e))?;
+    let bytes = encode_png(width, height, rgba).map_err(|e| refused(&e))?;
     write_whole(path, &bytes).map_err(|e| {
         let way_out = match e.kind() {
             std::io::ErrorKind::NotFound => "; its folder does not exist, make it or name another",

@@ -81,6 +81,7 @@ impl Layouts {
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),
                     texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
+                    texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
                 ],
             ),
             material: crate::materials::layout(device),

@@ -34,13 +34,13 @@ pub fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
     Ok(bytes)
 }
 
-/// The rows of a texture with 4 bytes a pixel, without padding.
+/// The rows of a texture, without padding.
 ///
 /// # Errors
 /// [`RenderError::Gpu`] with the device's words.
 pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderError> {
     let (width, height) = (texture.width(), texture.height());
-    let row = 4 * width;
+    let row = texture.format().block_copy_size(None).unwrap_or(4) * width;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("read-back"),

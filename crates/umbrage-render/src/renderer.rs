@@ -55,6 +55,7 @@ pub struct Renderer<'a> {
     pub(crate) instances: wgpu::Buffer,
     pub(crate) solid: Vec<Batch>,
     pub(crate) blended: Vec<Batch>,
+    pub(crate) clip_from_world: Mat4,
     views: Vec<ShadowView>,
     exposure: f32,
     warnings: Vec<String>,
@@ -77,6 +78,7 @@ impl<'a> Renderer<'a> {
         let lit_at_once = matches!(options.view, View::Final | View::Light) && (options.samples > 1 || emits);
         let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
 
+        check_given(scene, &options)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let layouts = Layouts::new(&gpu.device);
         let geometry = Geometry::new(&gpu.device, scene);
@@ -150,6 +152,7 @@ impl<'a> Renderer<'a> {
             instances,
             solid,
             blended,
+            clip_from_world: eye.clip_from_world,
             views: lights.views,
             exposure,
             warnings,
@@ -194,6 +197,7 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
     let is_blinn = |r: &Reflectance| options.all_blinn || matches!(r, Reflectance::Blinn { .. });
     ShaderNeeds {
         combination: options.settings.combination,
+        given: options.given.is_some(),
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
         placed: scene.lights.iter().any(|l| l.light.kind != LightKind::Directional),
@@ -270,6 +274,23 @@ fn check_samples(gpu: &Gpu, asked: u32) -> Result<(), RenderError> {
     }
     let names: Vec<_> = available.iter().map(u32::to_string).collect();
     Err(RenderError::Samples { asked, available: names.join(" or ") })
+}
+
+/// Does what is given fit the scene and the picture?
+fn check_given(scene: &Scene, options: &RenderOptions) -> Result<(), RenderError> {
+    let Some(given) = &options.given else { return Ok(()) };
+    let lights = scene.lights.len().min(MAX_LIGHTS);
+    let pixels = options.size.element_product() as usize;
+    let fits = given.of_light.len() == lights && given.of_light.iter().all(|v| v.len() == pixels);
+    if fits && options.settings.combination.is_none() {
+        return Ok(());
+    }
+    Err(RenderError::View(if fits {
+        format!("V is given, so `{}` has nothing to do; use `unshadowed`", options.settings.technique.id)
+    } else {
+        let found: Vec<usize> = given.of_light.iter().map(Vec::len).collect();
+        format!("V is given for {found:?} pixels of each light; {lights} lights of {pixels} are needed")
+    }))
 }
 
 /// The light that the debug views show, when they need one.
@@ -388,6 +409,7 @@ fn frame_group(
         ..Default::default()
     });
     let maps = shadows.map_or(&stand_in, |s| s.maps.array());
+    let given = crate::textures::given(&gpu.device, &gpu.queue, options);
     let entries = [
         frame.as_entire_binding(),
         gpu_lights.as_entire_binding(),
@@ -396,6 +418,7 @@ fn frame_group(
         wgpu::BindingResource::Sampler(&compare),
         wgpu::BindingResource::TextureView(&slides),
         wgpu::BindingResource::Sampler(&slide_sampler),
+        wgpu::BindingResource::TextureView(&given),
     ];
     let entries: Vec<_> =
         (0u32..).zip(entries).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();

@@ -22,6 +22,8 @@ fn filter_function(combination: &Combination) -> String {
 pub struct ShaderNeeds {
     /// The map, if there is one.
     pub combination: Option<Combination>,
+    /// Is V given for each pixel?
+    pub given: bool,
     /// Does any surface answer by metallic-roughness?
     pub metallic_roughness: bool,
     /// Does any surface answer by Lambert and Blinn?
@@ -41,12 +43,15 @@ const WRITTEN_OUT: usize = 4;
 fn lit_by_all(views: &[Option<usize>]) -> String {
     let sum = if views.len() <= WRITTEN_OUT {
         let one = |(light, view): (usize, &Option<usize>)| {
-            format!("    sum += lit_by(lights[{light}], views[{}], s, p_world, v);\n", view.unwrap_or(0))
+            format!(
+                "    sum += lit_by({light}u, lights[{light}], views[{}], s, p_world, v);\n",
+                view.unwrap_or(0)
+            )
         };
         views.iter().enumerate().map(one).collect()
     } else {
         "    for (var i = 0u; i < frame.light_count; i++) {
-        sum += lit_by(lights[i], views[max(lights[i].view, 0)], s, p_world, v);
+        sum += lit_by(i, lights[i], views[max(lights[i].view, 0)], s, p_world, v);
     }
 "
         .to_owned()
@@ -60,6 +65,18 @@ fn lit_by_all(views: &[Option<usize>]) -> String {
     )
 }
 
+/// The share of a light that is seen, without any technique.
+const ALL_VISIBLE: &str = "alias Seen = f32;
+fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen { return 1.0; }
+";
+
+/// The share of a light that is seen, where it is given.
+const GIVEN: &str = "alias Seen = vec3f;
+fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen {
+    return textureLoad(given_v, at_pixel, index, 0).rgb;
+}
+";
+
 /// What all shaders begin with: the library, the frame, and the technique's visibility.
 fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
@@ -67,18 +84,20 @@ fn prelude(needs: &ShaderNeeds) -> String {
     modules.extend(["view", "light", "cookie", "locate"]);
     let library = assemble(&modules).unwrap_or_else(|e| format!("// {e}\n"));
     let visibility = match &needs.combination {
+        _ if needs.given => GIVEN.to_owned(),
         // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
         Some(combination) => format!(
-            "fn map_visibility(view: UmbrageView, kind: u32, p_world: vec3f) -> f32 {{
+            "alias Seen = f32;
+fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen {{
     let at = umbrage_locate(view, p_world);
-    let outside = select(0.0, 1.0, kind == DIRECTIONAL);
-    return select(outside, {}(maps, map_compare, view, at), at.inside);
+    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
+    let seen = select(outside, {}(maps, map_compare, view, at), at.inside);
+    return select(seen, 1.0, light.view < 0);
 }}
 ",
             filter_function(combination)
         ),
-        None => "fn map_visibility(view: UmbrageView, kind: u32, p_world: vec3f) -> f32 { return 1.0; }\n"
-            .to_owned(),
+        None => ALL_VISIBLE.to_owned(),
     };
     let flags = [
         ("ANY_METALLIC_ROUGHNESS", needs.metallic_roughness),
@@ -117,7 +136,9 @@ pub fn all() -> Vec<(String, String)> {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
                 let views = (0..lights).map(|i| (i % 2 == 0).then_some(i / 2)).collect();
                 let (placed, slide) = (lights != 1, lights > 1);
-                let needs = ShaderNeeds { combination, metallic_roughness, blinn, placed, slide, views };
+                let given = combination.is_none() && lights == 1;
+                let needs =
+                    ShaderNeeds { combination, given, metallic_roughness, blinn, placed, slide, views };
                 all.push((format!("mesh for {needs:?}"), mesh(&needs)));
                 all.push((format!("screen for {needs:?}"), screen(&needs)));
             }

@@ -14,6 +14,8 @@ pub struct Targets {
     pub depth: wgpu::TextureView,
     /// Surfaces; `None` when everything is lit at once.
     pub gbuffer: Option<wgpu::TextureView>,
+    /// Surfaces and depth to be read back, where there is a G-buffer.
+    pub surfaces: Option<[wgpu::Texture; 2]>,
     /// Colour with several samples, resolved into the output.
     pub multisampled: Option<wgpu::TextureView>,
 }
@@ -45,13 +47,16 @@ impl Targets {
         let drawn = Usage::RENDER_ATTACHMENT;
         let samples = if deferred { 1 } else { options.samples };
         let output = make("output", format_of(options.view), 1, drawn | Usage::COPY_SRC);
-        let depth_usage = if deferred { drawn | Usage::TEXTURE_BINDING } else { drawn };
-        let view = |texture: wgpu::Texture| texture.create_view(&Default::default());
+        let read = drawn | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
+        let depth = make("depth", DEPTH_FORMAT, samples, if deferred { read } else { drawn });
+        let gbuffer = deferred.then(|| make("gbuffer", GBUFFER, 1, read));
+        let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         Ok(Self {
             output_view: output.create_view(&Default::default()),
-            depth: view(make("depth", DEPTH_FORMAT, samples, depth_usage)),
-            gbuffer: deferred.then(|| view(make("gbuffer", GBUFFER, 1, drawn | Usage::TEXTURE_BINDING))),
-            multisampled: (samples > 1).then(|| view(make("samples", COLOR, samples, drawn))),
+            depth: view(&depth),
+            gbuffer: gbuffer.as_ref().map(view),
+            multisampled: (samples > 1).then(|| view(&make("samples", COLOR, samples, drawn))),
+            surfaces: gbuffer.map(|gbuffer| [gbuffer, depth]),
             output,
         })
     }

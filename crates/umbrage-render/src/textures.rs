@@ -1,5 +1,6 @@
 //! Pictures on the GPU, with all their smaller sizes.
 
+use crate::RenderOptions;
 use std::collections::HashMap;
 use umbrage_scene::{Image, Scene, TextureRef, Wrap};
 use wgpu::util::TextureBlitter;
@@ -198,6 +199,40 @@ pub fn slides(device: &wgpu::Device, queue: &wgpu::Queue, images: &[&Image]) -> 
         blitter.copy(device, &mut encoder, &from, &to);
     }
     queue.submit([encoder.finish()]);
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+/// The given V of all lights in one array; without any, a texel that no shader reads.
+pub fn given(device: &wgpu::Device, queue: &wgpu::Queue, options: &RenderOptions) -> wgpu::TextureView {
+    let layers = options.given.as_ref().map_or(&[][..], |given| &given.of_light);
+    let [width, height] = if layers.is_empty() { [1, 1] } else { options.size.to_array() };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("given V"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers.len().max(1) as u32 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (z, v) in (0..).zip(layers) {
+        let texels: Vec<[f32; 4]> = v.iter().map(|v| v.extend(1.0).to_array()).collect();
+        queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture: &texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 0, y: 0, z },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytemuck::cast_slice(&texels),
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: None },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+    }
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()

@@ -171,6 +171,7 @@ fn fs_gbuffer_full(in: FullVertex, @builtin(front_facing) front: bool) -> @locat
 @fragment
 fn fs_forward_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let f = plain_surface(in.normal, front);
+    at_pixel = vec2u(in.position.xy);
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }
 
@@ -178,5 +179,6 @@ fn fs_forward_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @loc
 fn fs_forward_full(in: FullVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let f = full_surface(in, front);
     cut_out(f.alpha);
+    at_pixel = vec2u(in.position.xy);
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }

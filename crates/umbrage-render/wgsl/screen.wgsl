@@ -25,6 +25,7 @@ fn pixel(position: vec4f) -> Pixel {
 @fragment
 fn fs_final(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
+    at_pixel = vec2u(position.xy);
     return vec4f(shade(here.surface, here.p_world), 1.0);
 }
 
@@ -32,11 +33,13 @@ fn fs_final(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @fragment
 fn fs_visibility(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
-    let light = lights[frame.shown_light];
+    at_pixel = vec2u(position.xy);
+    let index = frame.shown_light;
+    let light = lights[index];
     let arriving = incoming(light, here.p_world);
     let facing = dot(here.surface.shading_normal, arriving.towards) > 0.0;
-    let seen = select(0.0, visibility(light, views[max(light.view, 0)], here.p_world, arriving.towards), facing);
-    return vec4f(seen, 0.0, 0.0, 1.0);
+    let seen = visibility(index, light, views[max(light.view, 0)], here.p_world, arriving.towards);
+    return vec4f(vec3f(select(Seen(0.0), seen, facing)), 1.0);
 }
 
 // Distance from near (0) to far (1) along the light's axis.

@@ -2,7 +2,6 @@
 #![allow(dead_code)]
 
 pub mod compare;
-pub mod raycast;
 pub mod scenes;
 
 use std::sync::{Mutex, MutexGuard, OnceLock};
