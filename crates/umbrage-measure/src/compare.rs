@@ -1,0 +1,442 @@
+//! Every technique on every light and camera.
+
+use crate::cost::Cost;
+use crate::heat::{heat, picture_of_v};
+use crate::numbers::params;
+use crate::reach::reach_px;
+use crate::view::{TruthSummary, ViewSummary, ViewTruth, name_of};
+use crate::{MeasureError, Progress};
+use glam::Vec3;
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::sync::Arc;
+use std::time::Instant;
+use umbrage_render::picture::encode_png;
+use umbrage_render::umbrage::core::Camera;
+use umbrage_render::umbrage::core::technique::Settings;
+use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View};
+use umbrage_scene::{Scene, SceneLight};
+use umbrage_truth::{Errors, Frame, Quality, Rays, flicker, flip};
+
+/// From where a scene is seen.
+#[derive(Clone, Debug)]
+pub enum Cameras {
+    /// Each for itself, with its name.
+    Each(Vec<(String, Camera)>),
+    /// The frames of a path: errors are means over them, and what changes between them is measured.
+    Path(String, Vec<Camera>),
+}
+
+impl Cameras {
+    /// Each camera or path, with its frames.
+    fn groups(&self) -> Vec<(String, Vec<Camera>)> {
+        match self {
+            Self::Each(cameras) => {
+                cameras.iter().map(|(name, camera)| (name.clone(), vec![*camera])).collect()
+            }
+            Self::Path(name, frames) => vec![(name.clone(), frames.clone())],
+        }
+    }
+}
+
+/// What is measured.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// From where.
+    pub cameras: Cameras,
+    /// Which of the scene's lights, each alone.
+    pub lights: Vec<usize>,
+    /// Which techniques, with their parameters.
+    pub techniques: Vec<Settings>,
+    /// How truth is found.
+    pub quality: Quality,
+    /// Frames of each technique that are timed.
+    pub frames: u32,
+    /// Size and look of the pictures; settings, view and shown light do not count.
+    pub options: RenderOptions,
+}
+
+/// One technique under one light from one camera (or along one path). Shares and errors are fractions of 1.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Which [`ViewSummary`], by its id.
+    pub view: String,
+    /// The technique's name on the command line.
+    pub technique: &'static str,
+    /// Its name for people.
+    pub label: &'static str,
+    /// What it is.
+    pub summary: &'static str,
+    /// Which light of the scene.
+    pub light: usize,
+    /// Which camera or path.
+    pub camera: String,
+    /// Choices and parameters.
+    pub params: Map<String, Value>,
+    /// Mean of max(0, V* - V).
+    pub false_shadow: f64,
+    /// Mean of max(0, V - V*).
+    pub false_light: f64,
+    /// Root of the mean square of V - V*.
+    pub rmse: f64,
+    /// Share of sure receivers that are lit in truth and darker than 0.95.
+    pub acne: f64,
+    /// Share of sure receivers that are dark in truth and brighter than 0.05.
+    pub leak: f64,
+    /// Mean of |V - V*| in the edge band.
+    pub edge: f64,
+    /// Share of receivers in the edge band.
+    pub band: f64,
+    /// From a contact to where its shadow begins, metres.
+    pub gap_m: Option<f64>,
+    /// Width of soft edges over that of similar triangles.
+    pub penumbra: Option<f64>,
+    /// Change of V between frames where the truth does not change.
+    pub flicker: Option<f64>,
+    /// Perceptual difference of the final picture.
+    pub flip: f64,
+    /// Median of what the shadow adds to a frame.
+    pub cost_ms: f64,
+    /// Its least.
+    pub cost_min_ms: f64,
+    /// Its greatest.
+    pub cost_max_ms: f64,
+    /// Frame with shadows.
+    pub frame_ms: f64,
+    /// Frame without.
+    pub unshadowed_ms: f64,
+    /// Memory of the maps.
+    pub memory_bytes: u64,
+    /// Passes that make the shadow.
+    pub passes: u64,
+    /// Their draw calls.
+    pub draws: u64,
+    /// Their triangles.
+    pub triangles: u64,
+    /// Texels drawn.
+    pub texels: u64,
+    /// Lookups for each lit pixel.
+    pub taps: u64,
+    /// All passes of the frame.
+    pub pass_names: Vec<String>,
+    /// Picture, below the report's folder.
+    pub r#final: String,
+    /// V.
+    pub visibility: String,
+    /// V - V*.
+    pub heat: String,
+    /// What to type to draw it again.
+    pub command: String,
+    /// The three pictures, PNG.
+    #[serde(skip)]
+    pub pictures: [Vec<u8>; 3],
+    /// The technique with its parameters.
+    #[serde(skip)]
+    pub settings: Settings,
+}
+
+/// All that was measured.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// How truth was found.
+    pub truth: TruthSummary,
+    /// Each camera and light.
+    pub views: Vec<ViewSummary>,
+    /// Each technique on each of these.
+    pub rows: Vec<Row>,
+    /// What did not go as a user may expect.
+    pub warnings: Vec<String>,
+}
+
+/// What is known of a technique while its frames go by.
+#[derive(Default)]
+struct Running {
+    errors: Vec<Errors>,
+    gaps_m: Vec<f64>,
+    penumbrae: Vec<f64>,
+    flickers: Vec<f64>,
+    last_v: Vec<Vec3>,
+}
+
+/// Draws and traces everything that `plan` names.
+///
+/// # Errors
+/// See [`MeasureError`].
+pub fn compare(
+    gpu: &Gpu,
+    scene: &Scene,
+    plan: &Plan,
+    progress: &Progress<'_>,
+) -> Result<Comparison, MeasureError> {
+    let groups = plan.cameras.groups();
+    let frames: usize = groups.iter().map(|(_, frames)| frames.len()).sum();
+    // The truth of a frame counts as much as a technique's.
+    let steps = (plan.lights.len() * frames * (1 + plan.techniques.len())).max(1) as f32;
+    progress_to(progress, "building the ray hierarchy", 0.0)?;
+    let start = Instant::now();
+    let rays = Rays::new(scene)?;
+    let build_s = start.elapsed().as_secs_f64();
+    let mut made = Comparison {
+        truth: TruthSummary { samples: 1, ..TruthSummary::default() },
+        views: Vec::new(),
+        rows: Vec::new(),
+        warnings: Vec::new(),
+    };
+    let mut step = 0;
+    for &light in &plan.lights {
+        let alone = Scene { lights: vec![scene.lights[light].clone()], ..scene.clone() };
+        for (camera, (name, cameras)) in groups.iter().enumerate() {
+            let at = At { id: format!("c{camera}-l{light}"), name, light };
+            let steps_done = |label: &str, done: f32| progress(label, (step as f32 + done) / steps);
+            measure_group(gpu, &rays, &alone, plan, &at, cameras, &mut made, &steps_done)?;
+            step += cameras.len() * (1 + plan.techniques.len());
+        }
+    }
+    made.truth.rays_per_second = made.truth.rays as f64 / made.truth.seconds.max(1e-9);
+    made.truth.seconds += build_s;
+    gpu.check()?;
+    Ok(made)
+}
+
+fn progress_to(progress: &Progress<'_>, label: &str, share: f32) -> Result<(), MeasureError> {
+    if progress(label, share).is_break() { Err(MeasureError::Stopped) } else { Ok(()) }
+}
+
+/// Which camera and light.
+struct At<'a> {
+    id: String,
+    name: &'a str,
+    light: usize,
+}
+
+/// One light along the frames of one camera. `alone` has that light only; `progress` counts steps.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "they are the whole state of a measurement, and it has one caller"
+)]
+fn measure_group(
+    gpu: &Gpu,
+    rays: &Rays<'_>,
+    alone: &Scene,
+    plan: &Plan,
+    at: &At<'_>,
+    cameras: &[Camera],
+    made: &mut Comparison,
+    progress: &Progress<'_>,
+) -> Result<(), MeasureError> {
+    let shown = cameras.len() / 2;
+    let mut running: Vec<Running> = plan.techniques.iter().map(|_| Running::default()).collect();
+    let mut last: Option<ViewTruth> = None;
+    for (frame, camera) in cameras.iter().enumerate() {
+        let done = frame * (1 + plan.techniques.len());
+        let tracing = |label: &str, share: f32| progress(label, done as f32 + share);
+        let (truth, found) =
+            ViewTruth::new(gpu, rays, alone, camera, &plan.options, &plan.quality, &tracing)?;
+        made.truth.seconds += found.seconds;
+        made.truth.rays += found.rays;
+        made.truth.samples = made.truth.samples.max(found.samples);
+        made.truth.excluded_pixels += found.excluded_pixels;
+        let scene = Shot { gpu, scene: alone, camera, options: &plan.options };
+        let reference = (frame == shown).then(|| scene.of_truth(&truth)).transpose()?;
+        for (i, settings) in plan.techniques.iter().enumerate() {
+            let label = format!("measuring {}", settings.technique.id);
+            progress_to(progress, &label, (done + 1 + i) as f32)?;
+            let v = scene.visibility(settings, &mut made.warnings)?;
+            let (errors, shape) = truth.judge(&v.v, &v.reach_px(&truth, settings));
+            let so_far = &mut running[i];
+            so_far.errors.push(errors);
+            so_far.gaps_m.extend(shape.gap_m);
+            so_far.penumbrae.extend(shape.penumbra);
+            if let Some(last) = &last {
+                let frames = [frame_of(last, &so_far.last_v), frame_of(&truth, &v.v)];
+                so_far.flickers.extend(flicker(&frames));
+            }
+            if let Some(reference) = &reference {
+                made.rows.push(row(&scene, settings, &truth, &v.v, reference, at, plan.frames)?);
+            }
+            so_far.last_v = v.v;
+        }
+        if let Some(reference) = reference {
+            made.views.push(summary(&truth, &reference, &alone.lights[0], at)?);
+        }
+        last = Some(truth);
+    }
+    let first = made.rows.len() - plan.techniques.len();
+    for (row, so_far) in made.rows[first..].iter_mut().zip(&running) {
+        so_far.put(row);
+    }
+    Ok(())
+}
+
+fn frame_of<'a>(truth: &'a ViewTruth, v: &'a [Vec3]) -> Frame<'a> {
+    let (surfaces, receivers) = (&truth.surfaces, truth.judged.receivers());
+    Frame { surfaces, truth: &truth.visibility.v, v, receivers }
+}
+
+impl Running {
+    /// Means over the frames; the gap is the greatest of any.
+    fn put(&self, row: &mut Row) {
+        let count = self.errors.len().max(1) as f64;
+        let mean = |of: fn(&Errors) -> f64| self.errors.iter().map(of).sum::<f64>() / count;
+        row.false_shadow = mean(|e| e.false_shadow);
+        row.false_light = mean(|e| e.false_light);
+        row.rmse = mean(|e| e.rmse);
+        row.acne = mean(|e| e.acne);
+        row.leak = mean(|e| e.leak);
+        row.edge = mean(|e| e.edge);
+        row.band = mean(|e| e.band);
+        row.gap_m = self.gaps_m.iter().copied().reduce(f64::max);
+        let average = |list: &[f64]| (!list.is_empty()).then(|| list.iter().sum::<f64>() / list.len() as f64);
+        row.penumbra = average(&self.penumbrae);
+        row.flicker = average(&self.flickers);
+    }
+}
+
+/// A scene from a camera, to be drawn in several ways.
+struct Shot<'a> {
+    gpu: &'a Gpu,
+    scene: &'a Scene,
+    camera: &'a Camera,
+    options: &'a RenderOptions,
+}
+
+/// A technique's answer, and the view that it was looked up in.
+struct Answer {
+    v: Vec<Vec3>,
+    view: Option<umbrage_render::umbrage::core::fit::ShadowView>,
+}
+
+impl Answer {
+    fn reach_px(&self, truth: &ViewTruth, settings: &Settings) -> Vec<f32> {
+        let filter_texel = settings.combination.map_or(0.0, |c| c.filter.reach_texel());
+        reach_px(&truth.surfaces, self.view.as_ref(), settings.map_size_texel(), filter_texel)
+    }
+}
+
+impl<'a> Shot<'a> {
+    fn renderer(&self, settings: &Settings, view: View) -> Result<Renderer<'a>, MeasureError> {
+        let options = RenderOptions {
+            settings: settings.clone(),
+            view,
+            shown_light: 0,
+            samples: 1,
+            given: None,
+            ..self.options.clone()
+        };
+        Ok(Renderer::new(self.gpu, self.scene, self.camera, options)?)
+    }
+
+    fn visibility(&self, settings: &Settings, warnings: &mut Vec<String>) -> Result<Answer, MeasureError> {
+        let renderer = self.renderer(settings, View::Visibility)?;
+        renderer.frame(Measure::Frame)?;
+        for warning in renderer.warnings() {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        let v = renderer.visibility()?.into_iter().map(Vec3::splat).collect();
+        Ok(Answer { v, view: renderer.views().first().copied() })
+    }
+
+    /// The final picture with the truth's V.
+    fn of_truth(&self, truth: &ViewTruth) -> Result<Vec<u8>, MeasureError> {
+        let given = Arc::new(GivenVisibility { of_light: vec![truth.visibility.v.clone()] });
+        let options = RenderOptions {
+            settings: unshadowed()?,
+            view: View::Final,
+            samples: 1,
+            given: Some(given),
+            ..self.options.clone()
+        };
+        let renderer = Renderer::new(self.gpu, self.scene, self.camera, options)?;
+        renderer.frame(Measure::Frame)?;
+        Ok(renderer.picture()?)
+    }
+}
+
+fn unshadowed() -> Result<Settings, MeasureError> {
+    Settings::new("unshadowed", []).map_err(|e| MeasureError::Write(e.to_string()))
+}
+
+fn png(truth: &ViewTruth, rgba: &[u8]) -> Result<Vec<u8>, MeasureError> {
+    let size = truth.size();
+    encode_png(size.x, size.y, rgba).map_err(|e| MeasureError::Write(format!("cannot pack a picture: {e}")))
+}
+
+/// A row with its pictures and costs; errors over all frames are put in later.
+fn row(
+    shot: &Shot<'_>,
+    settings: &Settings,
+    truth: &ViewTruth,
+    v: &[Vec3],
+    reference: &[u8],
+    at: &At<'_>,
+    frames: u32,
+) -> Result<Row, MeasureError> {
+    let with = shot.renderer(settings, View::Final)?;
+    let without = shot.renderer(&unshadowed()?, View::Final)?;
+    let cost = Cost::measure(&with, &without, settings, frames)?;
+    let picture = with.picture()?;
+    let size = truth.size();
+    let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);
+    let technique = settings.technique;
+    let file = |what: &str| format!("img/{}-{}-{what}.png", at.id, technique.id);
+    Ok(Row {
+        view: at.id.clone(),
+        technique: technique.id,
+        label: technique.label,
+        summary: technique.summary,
+        light: at.light,
+        camera: at.name.to_owned(),
+        params: params(settings),
+        false_shadow: 0.0,
+        false_light: 0.0,
+        rmse: 0.0,
+        acne: 0.0,
+        leak: 0.0,
+        edge: 0.0,
+        band: 0.0,
+        gap_m: None,
+        penumbra: None,
+        flicker: None,
+        flip: flip(reference, &picture, size.x, size.y),
+        cost_ms: cost.cost_ms,
+        cost_min_ms: cost.cost_min_ms,
+        cost_max_ms: cost.cost_max_ms,
+        frame_ms: cost.frame_ms,
+        unshadowed_ms: cost.unshadowed_ms,
+        memory_bytes: cost.memory_bytes,
+        passes: cost.passes,
+        draws: cost.draws,
+        triangles: cost.triangles,
+        texels: cost.texels,
+        taps: cost.taps,
+        pass_names: cost.pass_names,
+        r#final: file("final"),
+        visibility: file("visibility"),
+        heat: file("heat"),
+        command: String::new(),
+        pictures: [png(truth, &picture)?, png(truth, &picture_of_v(v))?, png(truth, &heat)?],
+        settings: settings.clone(),
+    })
+}
+
+fn summary(
+    truth: &ViewTruth,
+    reference: &[u8],
+    light: &SceneLight,
+    at: &At<'_>,
+) -> Result<ViewSummary, MeasureError> {
+    let file = |what: &str| format!("img/{}-truth-{what}.png", at.id);
+    Ok(ViewSummary {
+        id: at.id.clone(),
+        camera: at.name.to_owned(),
+        light: name_of(at.light, &light.name, &light.light),
+        r#final: file("final"),
+        visibility: file("visibility"),
+        receivers: truth.judged.receivers().iter().filter(|r| **r).count(),
+        excluded_pixels: truth.excluded.iter().filter(|e| **e).count(),
+        soft_edges: truth.soft_edges(),
+        pictures: [png(truth, reference)?, png(truth, &picture_of_v(&truth.visibility.v))?],
+    })
+}

@@ -1,0 +1,203 @@
+//! Shadow maps against ray-traced truth, through the same comparison that users run.
+
+use glam::UVec2;
+use std::ops::ControlFlow;
+use std::sync::{Mutex, MutexGuard, OnceLock};
+use umbrage_measure::{Cameras, Comparison, MeasureError, Plan, Row, compare};
+use umbrage_render::umbrage::core::technique::Settings;
+use umbrage_render::umbrage::core::{Camera, Light, LightKind, LightShape};
+use umbrage_render::{Gpu, RenderOptions};
+use umbrage_scene::Scene;
+use umbrage_truth::Quality;
+
+const SIDE: u32 = 160;
+/// A map this fine has texels below a pixel in these pictures, so that only the edge itself may be wrong.
+const MAP: (&str, &str) = ("map_size", "2048");
+
+/// The software rasteriser, one test at a time. `None`, said loudly, where it is missing; a failure where
+/// `UMBRAGE_GOLDEN_REQUIRED=1` says that it must not be.
+fn gpu() -> Option<MutexGuard<'static, Gpu>> {
+    static GPU: OnceLock<Result<Mutex<Gpu>, String>> = OnceLock::new();
+    let made = GPU.get_or_init(|| Gpu::new(Some("llvmpipe")).map(Mutex::new).map_err(|e| e.to_string()));
+    match made {
+        Ok(gpu) => Some(gpu.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
+        Err(error) => {
+            let required = std::env::var("UMBRAGE_GOLDEN_REQUIRED").is_ok_and(|v| v == "1");
+            assert!(!required, "UMBRAGE_GOLDEN_REQUIRED=1, but: {error}");
+            eprintln!("SKIPPED, nothing was measured: {error}");
+            None
+        }
+    }
+}
+
+fn builtin(spec: &str) -> Scene {
+    umbrage_scene::load(&format!("builtin:{spec}")).expect("a built-in scene")
+}
+
+fn settings(technique: &str, pairs: &[(&str, &str)]) -> Settings {
+    Settings::new(technique, pairs.iter().copied()).expect("settings of a test")
+}
+
+fn plan(scene: &Scene, techniques: Vec<Settings>) -> Plan {
+    Plan {
+        cameras: Cameras::Each(vec![("first".into(), scene.cameras[0].camera)]),
+        lights: (0..scene.lights.len()).collect(),
+        quality: Quality { samples: 32, seed: 0 },
+        frames: 1,
+        options: RenderOptions { size: UVec2::splat(SIDE), ..RenderOptions::new(techniques[0].clone()) },
+        techniques,
+    }
+}
+
+fn measured(gpu: &Gpu, scene: &Scene, techniques: Vec<Settings>) -> Comparison {
+    compare(gpu, scene, &plan(scene, techniques), &|_: &str, _| ControlFlow::Continue(())).expect("measured")
+}
+
+fn with_light(mut scene: Scene, light: Light) -> Scene {
+    scene.lights.truncate(1);
+    scene.lights[0].light = light;
+    scene
+}
+
+fn sun_of(scene: &Scene) -> Light {
+    let spot = scene.lights[0].light;
+    Light { kind: LightKind::Directional, intensity: 3.0, near_m: None, far_m: None, ..spot }
+}
+
+/// Pixels of a share of the sure ones.
+fn pixels(row: &Row, share: f64, receivers: usize) -> usize {
+    (share * (1.0 - row.band) * receivers as f64).round() as usize
+}
+
+#[test]
+fn away_from_edges_the_map_is_right() {
+    let Some(gpu) = gpu() else { return };
+    for name in ["torus", "columns", "contact", "tilt"] {
+        for parallel in [false, true] {
+            let mut scene = builtin(name);
+            if parallel {
+                let sun = sun_of(&scene);
+                scene = with_light(scene, sun);
+            }
+            let techniques =
+                vec![settings("unshadowed", &[]), settings("hard", &[MAP]), settings("linear", &[MAP])];
+            let found = measured(&gpu, &scene, techniques);
+            let receivers = found.views[0].receivers;
+            let excluded = found.truth.excluded_pixels;
+            assert!(receivers > 2000 && excluded * 1000 < u64::from(SIDE * SIDE), "{name}: {excluded}");
+            for row in &found.rows[1..] {
+                let sure = pixels(row, 1.0, receivers);
+                let (acne, leak) = (pixels(row, row.acne, receivers), pixels(row, row.leak, receivers));
+                println!("{name} parallel {parallel} {}: {acne} acne, {leak} leak of {sure}", row.technique);
+                assert!(sure > 800, "{name}: the truth must have something to say: {sure}");
+                // A coarse curved mesh keeps a pixel near its terminator, where the neighbouring facet is steeper than
+                // the receiver's own; on flat ones there is none.
+                let most = if name == "tilt" { 0 } else { sure / 400 };
+                assert!(acne <= most && leak * 200 <= sure, "{name} {}: {acne} {leak}", row.technique);
+                // Flat things on flat ground: no shadow begins late. Metres.
+                let gap_m = row.gap_m.unwrap_or(0.0);
+                assert!(gap_m < 0.03, "{name} {}: a gap of {gap_m} m", row.technique);
+            }
+            let [none, .., linear] = found.rows.as_slice() else { panic!("three rows") };
+            assert!(none.false_shadow < 1e-6 && none.acne == 0.0);
+            if name != "tilt" {
+                assert!(
+                    pixels(none, none.leak, receivers) > 20,
+                    "{name}: without shadows there must be light"
+                );
+                assert!(none.rmse > 3.0 * linear.rmse && none.flip > 2.0 * linear.flip, "{name}");
+            }
+        }
+    }
+}
+
+/// Row H4: a uniform bias must be as large as the steepest receiver needs, and leaks everywhere else.
+#[test]
+fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("contact");
+    let small = ("map_size", "256");
+    let biases: Vec<String> = (0..12).map(|i| format!("{}", 1e-4 * f64::from(1 << i))).collect();
+    let uniform = biases.iter().map(|bias| settings("matrix-bias", &[small, ("matrix_bias", bias)]));
+    let techniques = std::iter::once(settings("linear", &[small])).chain(uniform).collect();
+    // Large enough that a texel is some pixels and the shadows are some texels wide.
+    let mut plan = plan(&scene, techniques);
+    plan.options.size = UVec2::splat(4 * SIDE);
+    let found = compare(&gpu, &scene, &plan, &|_: &str, _| ControlFlow::Continue(())).expect("measured");
+    let slope = &found.rows[0];
+    let (bias, uniform) = biases
+        .iter()
+        .zip(&found.rows[1..])
+        .find(|(_, row)| row.acne <= slope.acne)
+        .expect("some uniform bias is large enough");
+    let receivers = found.views[0].receivers;
+    for (name, row) in [("slope-scaled", slope), ("least uniform without more acne", uniform)] {
+        println!(
+            "{name}: {} of {} sure pixels leak, gap {:.4} m, false light {:.3} %, false shadow {:.3} %",
+            pixels(row, row.leak, receivers),
+            pixels(row, 1.0, receivers),
+            row.gap_m.unwrap_or(0.0),
+            100.0 * row.false_light,
+            100.0 * row.false_shadow
+        );
+    }
+    println!("the uniform bias is {bias} of the depth range");
+    assert!(uniform.leak > slope.leak && uniform.gap_m > slope.gap_m);
+    assert!(uniform.false_light > 1.1 * slope.false_light && uniform.false_shadow > 1.5 * slope.false_shadow);
+}
+
+/// A light with a shape: maps of today are hard, so their edges are too narrow, and the truth says so.
+#[test]
+fn hard_shadows_of_a_wide_light_are_too_narrow() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("contact");
+    let wide = Light { shape: LightShape::Disc { radius_m: 0.6 }, ..scene.lights[0].light };
+    let found = measured(&gpu, &with_light(scene, wide), vec![settings("linear", &[MAP])]);
+    let row = &found.rows[0];
+    let width = row.penumbra.expect("soft edges");
+    println!("{} soft edges, {width:.3} of their width", found.views[0].soft_edges);
+    assert!(found.views[0].soft_edges > 20 && width < 0.4 && row.rmse > 0.05, "{width} {}", row.rmse);
+    assert_eq!(found.truth.samples, 32);
+}
+
+#[test]
+fn a_path_shows_what_flickers() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("columns");
+    let camera = scene.cameras[0].camera;
+    let path = (0..3)
+        .map(|i| Camera { position_world: camera.position_world + glam::Vec3::X * 0.05 * i as f32, ..camera })
+        .collect();
+    let techniques = vec![
+        settings("unshadowed", &[]),
+        settings("linear", &[("map_size", "64")]),
+        settings("linear", &[("map_size", "64"), ("bias", "none")]),
+    ];
+    let plan = Plan { cameras: Cameras::Path("path".into(), path), ..plan(&scene, techniques) };
+    let found = compare(&gpu, &scene, &plan, &|_: &str, _| ControlFlow::Continue(())).expect("measured");
+    let flicker: Vec<f64> = found.rows.iter().map(|row| row.flicker.expect("places that stay")).collect();
+    println!("flicker without shadow, of a coarse map, of one with acne: {flicker:.5?}");
+    assert!(flicker[0] < 1e-6 && flicker[1] < 0.02 && flicker[2] > 2.0 * flicker[1], "{flicker:?}");
+}
+
+#[test]
+fn it_stops_when_asked_and_counts_what_does_not_vary() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("torus");
+    let one = plan(&scene, vec![settings("linear", &[("map_size", "128")])]);
+    let stopped = compare(&gpu, &scene, &one, &|_: &str, share| {
+        if share > 0.4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(stopped, Err(MeasureError::Stopped)));
+    let last = std::sync::atomic::AtomicU32::new(0);
+    let found = compare(&gpu, &scene, &one, &|_: &str, share| {
+        assert!((0.0..=1.0).contains(&share), "{share}");
+        last.fetch_max((share * 100.0) as u32, std::sync::atomic::Ordering::Relaxed);
+        ControlFlow::Continue(())
+    });
+    let row = &found.expect("measured").rows[0];
+    assert_eq!((row.passes, row.texels, row.memory_bytes, row.taps), (1, 128 * 128, 4 * 128 * 128, 1));
+    assert!(row.triangles > 20_000 && row.draws == 3 && row.pass_names.len() == 3);
+    assert!(row.cost_min_ms <= row.cost_ms && row.cost_ms <= row.cost_max_ms && row.frame_ms > 0.0);
+    assert!(last.into_inner() >= 50);
+}
