@@ -16,7 +16,7 @@ use umbrage_render::umbrage::core::technique::{DEFAULT, TECHNIQUES};
     subcommand_required = true,
     after_help = "Start with `umbrage render`: it draws the built-in scene into umbrage.png.\n\
                   `umbrage doctor` says what this machine can do and what is missing.\n\
-                  Exit status: 0 done, 1 failed, 2 wrong use."
+                  Exit status: 0 done, 1 failed, 2 wrong use, 130 stopped by Ctrl-C."
 )]
 pub struct Cli {
     /// What to do.
@@ -29,6 +29,10 @@ pub struct Cli {
 pub enum Command {
     /// Draw one picture of a scene
     Render(Box<RenderArgs>),
+    /// Find by rays how much of a light each pixel really sees
+    Truth(Box<TruthArgs>),
+    /// Measure every technique against the truth: a report of errors beside costs
+    Compare(Box<CompareArgs>),
     /// Measure what techniques cost, side by side in one process
     Bench(Box<BenchArgs>),
     /// List the techniques, their choices and parameters
@@ -90,8 +94,8 @@ pub struct SceneArgs {
     ///   inner=DEG           from the axis to where it begins to fade. Default 0.8 outer
     ///   range=M             where the light has faded to nothing. Default: never
     ///   radius=M            a shining sphere instead of a point; or disc=M, a disc of that radius, or
-    ///                       rect=W:H, a rectangle, both across the direction. Only `truth` and `compare`
-    ///                       soften by these so far: no technique does
+    ///                       rect=W:H, a rectangle, both across the direction. Only the truth softens by
+    ///                       these so far: no technique does
     ///   angle=DEG           across the disc of a sun (directional); 0.53 is the real one's
     ///   near=M far=M        planes of the shadow map. Default: fitted to the scene
     ///   cookie=FILE         a slide (png, jpg, webp) in front of a spot light
@@ -103,6 +107,10 @@ pub struct SceneArgs {
     /// Lights, camera, size and background of a case of a JSON file of cases, as FILE:CASE
     #[arg(long, value_name = "FILE:CASE", value_parser = specs::case_ref, conflicts_with = "light", help_heading = "Scene")]
     pub lights_from: Option<CaseRef>,
+
+    /// Keep only these of the lights, by number or name
+    #[arg(long, value_name = "N,...", value_delimiter = ',', help_heading = "Scene")]
+    pub lights: Vec<String>,
 
     /// Width and height in pixels [default: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = specs::size, help_heading = "Picture")]
@@ -203,6 +211,115 @@ pub struct RenderArgs {
     pub quiet: bool,
 }
 
+/// How carefully truth is found.
+#[derive(Args, Debug)]
+pub struct QualityArgs {
+    /// Rays from each pixel to a light that has a shape; a light that is a point takes one exact ray
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=65_536), help_heading = "Truth")]
+    pub samples: u32,
+
+    /// Which of many equally good sets of rays; the same seed gives the same picture on every machine
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Truth")]
+    pub seed: u32,
+}
+
+const TRUTH_EXAMPLES: &str = "Examples:
+  umbrage truth
+      V of the built-in scene's light into truth.png: white lit, black shadow
+  umbrage truth model.glb --ground --light radius=0.2 --samples 256
+      under a shining ball: umbra and penumbra
+  umbrage truth builtin:columns --view final -o true.png
+      the lit scene with true shadows of all its lights
+
+Lights get a shape by --light (radius, disc, rect, angle). Surfaces mixed by alpha colour the light that passes them; they
+are looked through by the camera. --view final needs a graphics adapter, --view visibility does not.";
+
+/// `umbrage truth`
+#[derive(Args, Debug)]
+#[command(after_long_help = TRUTH_EXAMPLES, after_help = "`umbrage truth --help` has examples and the keys of --light.")]
+pub struct TruthArgs {
+    /// Scene, lights, picture, machine.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// How carefully truth is found.
+    #[command(flatten)]
+    pub quality: QualityArgs,
+
+    /// Where the picture goes; a file of that name is replaced
+    #[arg(short, long, value_name = "FILE", default_value = "truth.png", help_heading = "Output")]
+    pub output: PathBuf,
+
+    /// What the picture shows
+    #[arg(long, value_name = "VIEW", default_value = "visibility", value_parser = truth_views(), help_heading = "Picture")]
+    pub view: String,
+
+    /// Which light's V is shown, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Picture")]
+    pub light_index: usize,
+
+    /// Print one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+
+    /// Print nothing but errors
+    #[arg(short, long, conflicts_with = "json", help_heading = "Output")]
+    pub quiet: bool,
+}
+
+const COMPARE_EXAMPLES: &str = "Examples:
+  umbrage compare
+      every technique on the built-in scene, into the folder report: open report/index.html
+  umbrage compare model.glb --ground --techniques hard,linear --set map_size=512 -o small-maps
+  umbrage compare builtin:columns --path frames=8,turn=4
+      along a camera's path: flicker, too
+  umbrage compare builtin:torus --light rect=0.5:0.5,position=-3:5:4 --samples 256 --json
+      under a shining rectangle; one JSON object and no report
+
+Each light is measured alone. `cost` is the median difference between neighbouring frames with and without shadows.";
+
+/// `umbrage compare`
+#[derive(Args, Debug)]
+#[command(after_long_help = COMPARE_EXAMPLES)]
+pub struct CompareArgs {
+    /// Scene, lights, picture, machine.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+
+    /// How carefully truth is found.
+    #[command(flatten)]
+    pub quality: QualityArgs,
+
+    /// Which techniques, by commas, or all
+    #[arg(short, long, value_name = "ID,...", default_value = "all", value_delimiter = ',',
+          value_parser = technique_ids(&["all"]), help_heading = "Shadow")]
+    pub techniques: Vec<String>,
+
+    /// Change a choice or parameter in every technique that has it; one at least must
+    #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
+    pub set: Vec<Pair>,
+
+    /// Cameras of the scene by number or name, or all; instead of --camera
+    #[arg(long, value_name = "N,...", value_delimiter = ',', conflicts_with_all = ["camera", "path"], help_heading = "Scene")]
+    pub cameras: Vec<String>,
+
+    /// A path of the camera, key=value,...: frames=N (8), turn=DEG around the scene's middle, move=x:y:z metres, in all
+    #[arg(long, value_name = "SPEC", value_parser = specs::path, help_heading = "Scene")]
+    pub path: Option<specs::PathSpec>,
+
+    /// The report's folder; an earlier report there is replaced. Default: report, and none with --json
+    #[arg(short, long, value_name = "FOLDER", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+
+    /// Timed frames of each technique, after one that warms up
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Output")]
+    pub frames: u32,
+
+    /// Print one JSON object
+    #[arg(long, help_heading = "Output")]
+    pub json: bool,
+}
+
 const BENCH_EXAMPLES: &str = "Examples:
   umbrage bench
   umbrage bench model.glb --techniques all --frames 60
@@ -293,6 +410,12 @@ fn technique_ids(more: &[&'static str]) -> PossibleValuesParser {
 
 fn view_ids() -> PossibleValuesParser {
     PossibleValuesParser::new(View::ALL.map(|view| PossibleValue::new(view.id()).help(view.summary())))
+}
+
+fn truth_views() -> PossibleValuesParser {
+    PossibleValuesParser::new(
+        [View::Visibility, View::Final].map(|view| PossibleValue::new(view.id()).help(view.summary())),
+    )
 }
 
 fn samples() -> impl TypedValueParser<Value = u32> {

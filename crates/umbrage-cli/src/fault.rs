@@ -13,6 +13,8 @@ pub enum Fault {
     Failed(String),
     /// The reader of standard output has gone: status 0.
     NobodyReads,
+    /// Ctrl-C: status 130, as shells have it.
+    Stopped,
 }
 
 impl Fault {
@@ -46,6 +48,22 @@ impl From<RenderError> for Fault {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::View(message) => Self::WrongUse(message),
+            other => Self::Failed(other.to_string()),
+        }
+    }
+}
+
+impl From<umbrage_truth::TruthError> for Fault {
+    fn from(error: umbrage_truth::TruthError) -> Self {
+        umbrage_measure::MeasureError::from(error).into()
+    }
+}
+
+impl From<umbrage_measure::MeasureError> for Fault {
+    fn from(error: umbrage_measure::MeasureError) -> Self {
+        match error {
+            umbrage_measure::MeasureError::Stopped => Self::Stopped,
+            umbrage_measure::MeasureError::Render(error) => error.into(),
             other => Self::Failed(other.to_string()),
         }
     }

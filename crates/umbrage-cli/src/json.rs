@@ -3,8 +3,9 @@
 use crate::fault::{Fault, say};
 use serde::Serialize;
 use serde_json::{Map, Value};
+pub use umbrage_measure::{decimal, median, params};
 use umbrage_render::umbrage::ChosenFormat;
-use umbrage_render::umbrage::core::technique::{Param, ParamDefault, Settings, Source};
+use umbrage_render::umbrage::core::technique::{Param, ParamDefault, Source};
 use umbrage_render::{PassReport, Renderer};
 use umbrage_scene::Scene;
 
@@ -121,12 +122,6 @@ pub struct SourceJson {
     pub year: u16,
 }
 
-/// The shortest decimal that means the same number; never infinite, which JSON cannot say.
-pub fn decimal(x: f32) -> f64 {
-    let x = if x.is_nan() { 0.0 } else { x.clamp(f32::MIN, f32::MAX) };
-    x.to_string().parse().unwrap_or(f64::from(x))
-}
-
 impl Machine {
     /// Names it.
     pub fn of(info: &wgpu::AdapterInfo) -> Self {
@@ -221,31 +216,6 @@ impl From<Source> for SourceJson {
     }
 }
 
-/// Choices and parameters by name.
-pub fn params(settings: &Settings) -> Map<String, Value> {
-    let mut map = Map::new();
-    if let Some(combination) = settings.combination {
-        for (key, row) in crate::techniques::CHOICES.iter().zip(combination.rows()) {
-            map.insert((*key).to_owned(), row.id.into());
-        }
-    }
-    for param in settings.params() {
-        map.insert(param.name.to_owned(), settings.value(param.name).map(decimal).into());
-    }
-    map
-}
-
-/// The middle of a list; the mean of the two in the middle of an even one. 0 of an empty one.
-pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    match sorted.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]),
-    }
-}
-
 /// Prints one object.
 ///
 /// # Errors
@@ -253,25 +223,4 @@ pub fn median(values: &[f64]) -> f64 {
 pub fn print(value: &impl Serialize) -> Result<(), Fault> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Fault::Failed(e.to_string()))?;
     say(&text)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short_and_finite() {
-        assert_eq!(decimal(0.1).to_string(), "0.1");
-        for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            assert!(decimal(odd).is_finite());
-        }
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(
-            [median(&[]), median(&[3.0]), median(&[3.0, 1.0, 2.0]), median(&[4.0, 1.0])],
-            [0.0, 3.0, 2.0, 2.5]
-        );
-    }
 }

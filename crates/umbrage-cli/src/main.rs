@@ -1,18 +1,22 @@
-//! The `umbrage` command. Exit status: 0 done, 1 failed, 2 wrong use.
+//! The `umbrage` command. Exit status: 0 done, 1 failed, 2 wrong use, 130 stopped by Ctrl-C.
 
+mod again;
 mod args;
 mod bench;
 mod cases;
+mod compare;
 mod doctor;
 mod fault;
 mod generate;
 mod json;
 mod passes;
+mod progress;
 mod render;
 mod setup;
 mod specs;
 mod techniques;
 mod text;
+mod truth;
 mod wgsl;
 
 use args::{Cli, Command};
@@ -62,6 +66,10 @@ fn main() -> ExitCode {
             fault::tell("umbrage", &message);
             ExitCode::from(1)
         }
+        Err(Fault::Stopped) => {
+            fault::tell("umbrage", "stopped before it was done; nothing was written");
+            ExitCode::from(130)
+        }
         Err(Fault::WrongUse(message)) => {
             fault::tell("umbrage", &message);
             ExitCode::from(2)
@@ -72,6 +80,8 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Fault> {
     match command {
         Command::Render(args) => render::run(&args),
+        Command::Truth(args) => truth::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Techniques(args) => techniques::run(&args),
         Command::Passes(args) => passes::run(&args),

@@ -85,7 +85,7 @@ fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, 
 }
 
 /// Can the picture be written there? Asked before any work.
-fn check_output(path: &Path) -> Result<(), Fault> {
+pub fn check_output(path: &Path) -> Result<(), Fault> {
     let failed = |reason: &str| Fault::Failed(format!("cannot write {}: {reason}", path.display()));
     if path.is_dir() {
         return Err(failed("it is a folder; name a .png file in it"));

@@ -25,6 +25,8 @@ pub struct Stage {
     pub background: Option<Vec3>,
     /// What the case asks for, texels.
     pub map_size: Option<u32>,
+    /// The number that each light had before some were left out.
+    pub light_numbers: Vec<usize>,
     /// What was added or left out, for the user's eye.
     pub notes: Vec<String>,
     /// Time of reading.
@@ -79,7 +81,34 @@ pub fn stage(args: &SceneArgs) -> Result<Stage, Fault> {
         umbrage_scene::add_ground(&mut scene);
     }
     let size = args.size.unwrap_or(size);
-    Ok(Stage { scene, camera, size, background: args.background.or(background), map_size, notes, load_ms })
+    let light_numbers = keep_lights(&mut scene, &args.lights)?;
+    let background = args.background.or(background);
+    Ok(Stage { scene, camera, size, background, map_size, light_numbers, notes, load_ms })
+}
+
+/// Keeps the lights that are named, all when none is. Returns the number that each had.
+fn keep_lights(scene: &mut Scene, asked: &[String]) -> Result<Vec<usize>, Fault> {
+    let names = || scene.lights.iter().map(|placed| placed.name.as_str());
+    let mut numbers = Vec::new();
+    for name in asked {
+        let by_name = names().position(|other| other == name);
+        let found = by_name.or_else(|| name.parse().ok().filter(|n| *n < scene.lights.len()));
+        let number = found.ok_or_else(|| {
+            let near = suggest(name, names().filter(|name| !name.is_empty()));
+            let count = scene.lights.len();
+            Fault::WrongUse(format!(
+                "--lights: there is no light `{name}`{near}; there are {count}, from 0 on"
+            ))
+        })?;
+        if !numbers.contains(&number) {
+            numbers.push(number);
+        }
+    }
+    if asked.is_empty() {
+        numbers = (0..scene.lights.len()).collect();
+    }
+    scene.lights = numbers.iter().map(|number| scene.lights[*number].clone()).collect();
+    Ok(numbers)
 }
 
 /// Without a case: the scene's own lights and camera, and the usual size.
@@ -130,7 +159,7 @@ fn choose_camera(
     }
 }
 
-fn camera_of_scene(scene: &Scene, name: &str) -> Result<Camera, Fault> {
+pub fn camera_of_scene(scene: &Scene, name: &str) -> Result<Camera, Fault> {
     let by_name = scene.cameras.iter().find(|placed| placed.name == name);
     let by_number = || name.parse::<usize>().ok().and_then(|index| scene.cameras.get(index));
     if let Some(found) = by_name.or_else(by_number) {

@@ -14,6 +14,17 @@ pub struct Pair {
     pub value: String,
 }
 
+/// How a camera moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSpec {
+    /// Pictures, 2 or more.
+    pub frames: u32,
+    /// Around the scene's middle, from first to last, degrees.
+    pub turn_deg: f32,
+    /// From first to last, metres.
+    pub move_m: Vec3,
+}
+
 /// `FILE:CASE`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseRef {
@@ -280,6 +291,26 @@ pub fn camera(text: &str) -> Result<CameraChoice, String> {
         return Err("near must be below far".into());
     }
     Ok(CameraChoice::Spec(spec))
+}
+
+/// `--path`
+pub fn path(text: &str) -> Result<PathSpec, String> {
+    let mut spec = PathSpec { frames: 8, turn_deg: 0.0, move_m: Vec3::ZERO };
+    for (key, value) in pairs(text, &["frames", "turn", "move"])? {
+        let set = match key {
+            "frames" => {
+                let frames = value.trim().parse().ok().filter(|frames| (2..=1000).contains(frames));
+                frames.map(|frames| spec.frames = frames).ok_or_else(|| "it must be 2 to 1000".to_owned())
+            }
+            "turn" => number(&value).map(|v| spec.turn_deg = v),
+            _ => vector(&value).map(|v| spec.move_m = v),
+        };
+        set.map_err(|e| format!("{key}: {e}"))?;
+    }
+    if spec.turn_deg == 0.0 && spec.move_m == Vec3::ZERO {
+        return Err("the camera does not move; say turn=DEG or move=x:y:z".into());
+    }
+    Ok(spec)
 }
 
 /// `--light`

@@ -6,12 +6,9 @@ use crate::json::{self, ParamJson, SourceJson};
 use crate::text;
 use serde_json::{Value, json};
 use umbrage_render::umbrage::core::technique::{
-    Bias, Choice, Combination, DEFAULT, Filter, Param, ParamDefault, Projection, Source, Storage, TECHNIQUES,
-    Technique,
+    Bias, Choice, Combination, DEFAULT, Filter, Param, ParamDefault, Projection, Settings, Source, Storage,
+    TECHNIQUES, Technique,
 };
-
-/// The four tables of choices, in the order of [`Combination::rows`].
-pub const CHOICES: [&str; 4] = ["storage", "projection", "bias", "filter"];
 
 /// Prints the table.
 ///
@@ -38,7 +35,7 @@ fn tables() -> impl Iterator<Item = (&'static str, Vec<&'static Choice>)> {
         Bias::ALL.iter().map(|c| c.row()).collect(),
         Filter::ALL.iter().map(|c| c.row()).collect(),
     ];
-    CHOICES.into_iter().zip(rows)
+    Settings::CHOICES.into_iter().zip(rows)
 }
 
 /// Every parameter once, in the order of the tables.
@@ -53,7 +50,7 @@ fn all_params() -> Vec<&'static Param> {
 }
 
 fn choices_of(combination: &Combination) -> String {
-    let pairs = CHOICES.iter().zip(combination.rows());
+    let pairs = Settings::CHOICES.iter().zip(combination.rows());
     pairs.map(|(key, row)| format!("{key}={}", row.id)).collect::<Vec<_>>().join(" ")
 }
 
@@ -101,7 +98,7 @@ fn listing(width: usize) -> String {
 }
 
 fn matrix() -> String {
-    let head = CHOICES.iter().map(|key| (*key).to_owned()).chain(["valid".to_owned()]).collect();
+    let head = Settings::CHOICES.iter().map(|key| (*key).to_owned()).chain(["valid".to_owned()]).collect();
     let mut rows: Vec<Vec<String>> = vec![head];
     let mut valid = 0;
     for combination in Combination::all() {
@@ -114,9 +111,9 @@ fn matrix() -> String {
     let count = rows.len() - 1;
     let mut out = String::new();
     for row in &rows {
-        let (choices, verdict) = row.split_at(CHOICES.len());
+        let (choices, verdict) = row.split_at(Settings::CHOICES.len());
         let head: String = choices.iter().map(|cell| format!("{cell:<12}")).collect();
-        out += &text::hang(&head, 12 * CHOICES.len(), &verdict.join(" "), text::width());
+        out += &text::hang(&head, 12 * Settings::CHOICES.len(), &verdict.join(" "), text::width());
     }
     out + &format!("{valid} of {count} combinations are valid\n")
 }
@@ -125,7 +122,7 @@ fn matrix_json() -> Vec<Value> {
     Combination::all()
         .map(|combination| {
             let mut entry = serde_json::Map::new();
-            for (key, row) in CHOICES.iter().zip(combination.rows()) {
+            for (key, row) in Settings::CHOICES.iter().zip(combination.rows()) {
                 entry.insert((*key).to_owned(), row.id.into());
             }
             entry.insert("valid".to_owned(), combination.objection().is_none().into());
@@ -137,7 +134,7 @@ fn matrix_json() -> Vec<Value> {
 
 fn technique_json(technique: &Technique) -> Value {
     let choices = technique.combination.map(|combination| {
-        let pairs = CHOICES.iter().zip(combination.rows());
+        let pairs = Settings::CHOICES.iter().zip(combination.rows());
         pairs.map(|(key, row)| ((*key).to_owned(), row.id.into())).collect::<serde_json::Map<String, Value>>()
     });
     let params: Vec<Value> = technique
