@@ -5,7 +5,6 @@ use crate::triangles::{Tag, Triangles};
 use crate::{TruthError, surface, walk};
 use glam::{DVec3, Vec3};
 use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use umbrage_scene::Scene;
@@ -63,23 +62,19 @@ impl<'a> Rays<'a> {
         if triangles.corners.is_empty() {
             return Ok(Self { scene, triangles, nodes: Vec::new() });
         }
-        let margin = Vec3::splat(BOX_MARGIN * triangles.extent_m.max(f32::MIN_POSITIVE));
-        let boxes: Vec<Aabb> = triangles
-            .corners
-            .iter()
-            .map(|[a, b, c]| {
-                let (min, max) = (a.min(*b).min(*c) - margin, a.max(*b).max(*c) + margin);
-                Aabb { min: min.into(), max: max.into() }
-            })
-            .collect();
-        let built = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut std::time::Duration::default());
-        drop(boxes);
+        let params = BvhBuildParams::medium_build();
+        let built = build_bvh2(&triangles.corners, params, &mut std::time::Duration::default());
         // In the order of the leaves, so that a leaf's triangles lie side by side.
         let order = &built.primitive_indices;
         triangles.corners = order.iter().map(|i| triangles.corners[*i as usize]).collect();
         triangles.tags = order.iter().map(|i| triangles.tags[*i as usize]).collect();
+        let margin = Vec3::splat(BOX_MARGIN * triangles.extent_m.max(f32::MIN_POSITIVE));
         let mut nodes = built.nodes;
         nodes.shrink_to_fit();
+        for node in &mut nodes {
+            node.min -= margin;
+            node.max += margin;
+        }
         Ok(Self { scene, triangles, nodes })
     }
 
@@ -110,7 +105,7 @@ impl<'a> Rays<'a> {
 
     /// Unit normal of a triangle's front.
     pub fn normal(&self, slot: u32) -> DVec3 {
-        let [a, b, c] = self.triangles.corners[slot as usize].map(Vec3::as_dvec3);
+        let [a, b, c] = self.triangles.corners[slot as usize].0.map(Vec3::as_dvec3);
         (b - a).cross(c - a).normalize_or_zero()
     }
 

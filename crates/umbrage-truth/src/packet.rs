@@ -32,6 +32,8 @@ pub struct Packet {
     pub(crate) t_max_f32: Lanes,
     /// Where the first ray goes.
     lead: Vec3,
+    /// One bit a ray, for each axis: does it go backwards along it?
+    backwards: [Mask; 3],
     /// Rays that are there and not ended yet.
     pub active: Mask,
 }
@@ -60,6 +62,7 @@ impl Packet {
             t_min_f32: [0.0; LANES],
             t_max_f32: [-1.0; LANES],
             lead: Vec3::X,
+            backwards: [0; 3],
             active: 0,
         }
     }
@@ -77,6 +80,7 @@ impl Packet {
             let way = way[axis] as f32;
             let least = 1e-18f32.copysign(way);
             self.inverse_f32[axis][lane] = 1.0 / if way.abs() < 1e-18 { least } else { way };
+            self.backwards[axis] |= Mask::from(way.is_sign_negative()) << lane;
         }
         self.t_min[lane] = t_min;
         self.t_min_f32[lane] = below(t_min);
@@ -88,6 +92,18 @@ impl Packet {
     pub fn end_at(&mut self, lane: usize, t_max: f64) {
         self.t_max[lane] = t_max;
         self.t_max_f32[lane] = above(t_max);
+    }
+
+    /// For each axis whether all rays go backwards along it; `None` when they do not agree. Rays that agree enter all boxes
+    /// by the same three sides.
+    pub fn agreed_sides(&self) -> Option<[bool; 3]> {
+        let all = |axis: Mask| match axis & self.active {
+            0 => Some(false),
+            some if some == self.active => Some(true),
+            _ => None,
+        };
+        let [x, y, z] = self.backwards.map(all);
+        Some([x?, y?, z?])
     }
 
     /// Which of the rays in `mask` reach a box.

@@ -22,6 +22,22 @@ fn double(lanes: &Lanes64, half: usize) -> __m256d {
     if half == 0 { low } else { high }
 }
 
+/// [`Packet::reach_box`] for rays that agree on the sides by which they enter, see [`Packet::agreed_sides`].
+#[inline]
+#[target_feature(enable = "avx2")]
+pub fn reach_box_by(packet: &Packet, backwards: [bool; 3], min: Vec3, max: Vec3, mask: Mask) -> Mask {
+    let (mut enter, mut leave) = (single(&packet.t_min_f32), single(&packet.t_max_f32));
+    for axis in 0..3 {
+        let (origin, inverse) = (single(&packet.origin_f32[axis]), single(&packet.inverse_f32[axis]));
+        let (near, far) = if backwards[axis] { (max[axis], min[axis]) } else { (min[axis], max[axis]) };
+        let near = _mm256_mul_ps(_mm256_sub_ps(_mm256_set1_ps(near), origin), inverse);
+        let far = _mm256_mul_ps(_mm256_sub_ps(_mm256_set1_ps(far), origin), inverse);
+        enter = _mm256_max_ps(near, enter);
+        leave = _mm256_min_ps(far, leave);
+    }
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave)) as Mask & mask
+}
+
 /// [`Packet::reach_box`]
 #[inline]
 #[target_feature(enable = "avx2")]
@@ -142,11 +158,16 @@ mod tests {
         }
         let mut number = numbers(7);
         let mut point = move || DVec3::new(number(), number(), number());
-        let (mut boxes, mut triangles) = (0, 0);
+        let (mut boxes, mut triangles, mut agreed) = (0, 0, 0);
         for round in 0..20_000 {
             let mut packet = Packet::empty();
             for lane in 0..LANES {
-                let way = if round % 5 == 0 { DVec3::Y } else { point().normalize() };
+                let way = point().normalize();
+                let way = match round % 5 {
+                    0 => DVec3::Y,
+                    1 => DVec3::new(way.x.abs(), -way.y.abs(), way.z.abs()),
+                    _ => way,
+                };
                 packet.set(lane, point(), way, 0.0, if lane == 3 { f64::INFINITY } else { 2.0 });
             }
             let corners = [point(), point(), point()].map(|p| p.as_vec3());
@@ -156,6 +177,13 @@ mod tests {
             #[allow(unsafe_code)]
             let reached = unsafe { reach_box(&packet, min, max, mask) };
             assert_eq!(reached, packet.reach_box(min, max, mask));
+            if let Some(backwards) = packet.agreed_sides() {
+                // SAFETY: asked for above.
+                #[allow(unsafe_code)]
+                let by = unsafe { reach_box_by(&packet, backwards, min, max, mask) };
+                assert_eq!(by, reached);
+                agreed += u32::from(by != 0);
+            }
             boxes += u32::from(reached != 0);
             for front_only in [false, true] {
                 // SAFETY: asked for above.
@@ -170,6 +198,6 @@ mod tests {
                 triangles += u32::from(hits.mask != 0);
             }
         }
-        assert!(boxes > 1000 && triangles > 1000, "{boxes} {triangles}");
+        assert!(boxes > 1000 && triangles > 1000 && agreed > 200, "{boxes} {triangles} {agreed}");
     }
 }

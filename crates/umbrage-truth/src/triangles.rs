@@ -2,6 +2,8 @@
 
 use crate::TruthError;
 use glam::{DVec3, Mat4, Vec3};
+use obvhs::Boundable;
+use obvhs::aabb::Aabb;
 use umbrage_scene::{AlphaMode, Material, Scene};
 
 /// Triangles that an index with flags can count.
@@ -50,6 +52,17 @@ impl Tag {
     }
 }
 
+/// A triangle's corners. The hierarchy is built from these themselves, because a box for each would take as much again.
+#[derive(Clone, Copy, Debug)]
+pub struct Corners(pub [Vec3; 3]);
+
+impl Boundable for Corners {
+    fn aabb(&self) -> Aabb {
+        let [a, b, c] = self.0;
+        Aabb { min: a.min(b).min(c).into(), max: a.max(b).max(c).into() }
+    }
+}
+
 /// All triangles that a scene draws. Corners are relative to `center_world`, so that single precision is finest where
 /// the scene is; counter-clockwise seen from the front, also in mirrored instances.
 #[derive(Debug)]
@@ -61,7 +74,7 @@ pub struct Triangles {
     /// Greatest absolute coordinate of the scene in world space: what its own numbers' rounding grows with.
     pub magnitude_m: f32,
     /// Three corners each.
-    pub corners: Vec<[Vec3; 3]>,
+    pub corners: Vec<Corners>,
     /// One for each.
     pub tags: Vec<Tag>,
     /// Index of the first triangle of each instance, and the count of all.
@@ -113,7 +126,7 @@ impl Triangles {
             let extent = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
             self.extent_m = self.extent_m.max(extent);
             self.tags.push(Tag::new(self.corners.len() as u32, material));
-            self.corners.push(corners);
+            self.corners.push(Corners(corners));
         }
     }
 

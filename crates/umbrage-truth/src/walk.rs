@@ -72,7 +72,7 @@ fn find_nearest_by(
             if tag.is_blended() {
                 continue;
             }
-            let hits = hit_triangle(packet, &rays.triangles.corners[slot], !tag.is_double_sided(), mask);
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, !tag.is_double_sided(), mask);
             for lane in lanes(hits.mask) {
                 let hole = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
                 if tag.is_pierceable() && hole() {
@@ -97,7 +97,7 @@ fn pass_light_by(
     walk(rays, packet, stack, reach_box, |packet, mask, slots| {
         for slot in slots {
             let tag = rays.triangles.tags[slot];
-            let hits = hit_triangle(packet, &rays.triangles.corners[slot], false, mask & packet.active);
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, false, mask & packet.active);
             if hits.mask == 0 {
                 continue;
             }
@@ -128,7 +128,7 @@ fn find_blocker_by(
     walk(rays, packet, stack, reach_box, |packet, mask, slots| {
         for slot in slots {
             let tag = rays.triangles.tags[slot];
-            let hits = hit_triangle(packet, &rays.triangles.corners[slot], false, mask);
+            let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, false, mask);
             for lane in lanes(hits.mask) {
                 let passes = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
                 if tag.is_pierceable() && passes() {
@@ -148,18 +148,22 @@ macro_rules! for_this_machine {
         pub fn $name(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
             #[cfg(target_arch = "x86_64")]
             {
-                use crate::packet_avx2::{hit_triangle, reach_box};
+                use crate::packet_avx2::{hit_triangle, reach_box, reach_box_by};
 
                 #[target_feature(enable = "avx2")]
                 fn avx2(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
-                    $by(
-                        rays,
-                        packet,
-                        out,
-                        stack,
-                        |p: &Packet, min, max, mask| reach_box(p, min, max, mask),
-                        |p: &Packet, corners: &[Vec3; 3], front, mask| hit_triangle(p, corners, front, mask),
-                    );
+                    let triangle =
+                        |p: &Packet, corners: &[Vec3; 3], front, mask| hit_triangle(p, corners, front, mask);
+                    match packet.agreed_sides() {
+                        Some(sides) => {
+                            let by = |p: &Packet, min, max, mask| reach_box_by(p, sides, min, max, mask);
+                            $by(rays, packet, out, stack, by, triangle)
+                        }
+                        None => {
+                            let any = |p: &Packet, min, max, mask| reach_box(p, min, max, mask);
+                            $by(rays, packet, out, stack, any, triangle)
+                        }
+                    }
                 }
 
                 if is_x86_feature_detected!("avx2") {
