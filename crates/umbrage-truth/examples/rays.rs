@@ -13,7 +13,7 @@ use umbrage_core::LightShape;
 use umbrage_truth::{Emitter, Quality, Ray, Rays, Samples, Surfaces, silent};
 
 const PER_PIXEL: usize = 64;
-const PACKET: usize = 8;
+const PACKET: usize = umbrage_truth::LANES;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);

@@ -105,22 +105,22 @@ impl Eye {
     }
 }
 
-/// Calls `row_pair` for each two rows, on all cores, and hands the rows back in order.
-pub(crate) fn in_row_pairs<T: Send>(
+/// Calls `band` for each few rows, on all cores, and hands the rows back in order.
+pub(crate) fn in_bands<T: Send>(
     size: UVec2,
     progress: &Progress<'_>,
-    row_pair: impl Fn(u32, &mut Stack) -> Vec<Vec<T>> + Sync,
+    band: impl Fn(u32, &mut Stack) -> Vec<Vec<T>> + Sync,
 ) -> Result<Vec<T>, TruthError> {
-    let pairs = size.y.div_ceil(BLOCK.y);
+    let bands = size.y.div_ceil(BLOCK.y);
     let done = AtomicUsize::new(0);
-    let rows: Result<Vec<_>, TruthError> = (0..pairs)
+    let rows: Result<Vec<_>, TruthError> = (0..bands)
         .into_par_iter()
-        .map_init(Stack::default, |stack, pair| {
-            let share = done.fetch_add(1, Ordering::Relaxed) as f32 / pairs as f32;
+        .map_init(Stack::default, |stack, index| {
+            let share = done.fetch_add(1, Ordering::Relaxed) as f32 / bands as f32;
             if progress(share).is_break() {
                 return Err(TruthError::Stopped);
             }
-            Ok(row_pair(pair * BLOCK.y, stack))
+            Ok(band(index * BLOCK.y, stack))
         })
         .collect();
     if progress(1.0).is_break() {
@@ -129,7 +129,7 @@ pub(crate) fn in_row_pairs<T: Send>(
     Ok(rows?.into_iter().flatten().flatten().collect())
 }
 
-/// The pixels of each block of a pair of rows that starts at `y`, left to right; block by block.
+/// The pixels of each block of a band that starts at row `y`, left to right; block by block.
 pub(crate) fn blocks(size: UVec2, y: u32) -> impl Iterator<Item = impl Iterator<Item = UVec2> + Clone> {
     (0..size.x.div_ceil(BLOCK.x)).map(move |block| {
         let pixel = move |i: u32| UVec2::new(block * BLOCK.x + i % BLOCK.x, y + i / BLOCK.x);
@@ -137,7 +137,7 @@ pub(crate) fn blocks(size: UVec2, y: u32) -> impl Iterator<Item = impl Iterator<
     })
 }
 
-/// Empty rows for the pair that starts at `y`.
+/// Empty rows for the band that starts at row `y`.
 pub(crate) fn rows_of<T: Clone>(size: UVec2, y: u32, value: T) -> Vec<Vec<T>> {
     (y..(y + BLOCK.y).min(size.y)).map(|_| vec![value.clone(); size.x as usize]).collect()
 }
@@ -159,7 +159,7 @@ impl Surfaces {
             return Err(TruthError::OutOfRange { what: "the picture's edge", value, allowed: "1 to 32768" });
         }
         let eye = Eye::new(camera, size);
-        let row_pair = |y: u32, stack: &mut Stack| {
+        let band = |y: u32, stack: &mut Stack| {
             let mut rows = rows_of(size, y, None);
             let mut sight = Vec::with_capacity(LANES);
             for block in blocks(size, y) {
@@ -181,7 +181,7 @@ impl Surfaces {
             }
             rows
         };
-        let seen = in_row_pairs(size, progress, row_pair)?;
+        let seen = in_bands(size, progress, band)?;
         Ok(Self { size, rays: seen.len() as u64, seen, camera: *camera })
     }
 
@@ -239,7 +239,7 @@ mod tests {
     fn every_pixel_is_in_one_block() {
         let size = UVec2::new(7, 5);
         let mut seen = vec![0; 35];
-        for y in (0..size.y).step_by(2) {
+        for y in (0..size.y).step_by(BLOCK.y as usize) {
             for pixel in blocks(size, y).flatten() {
                 seen[(pixel.y * size.x + pixel.x) as usize] += 1;
             }

@@ -1,6 +1,6 @@
 //! The scene ready for rays: a hierarchy of boxes over all its triangles.
 
-use crate::packet::{LANES, Mask, Packet};
+use crate::packet::{LANES, Lane, Mask};
 use crate::triangles::{Tag, Triangles};
 use crate::{TruthError, surface, walk};
 use glam::{DVec3, Vec3};
@@ -114,26 +114,37 @@ impl<'a> Rays<'a> {
         self.triangles.origin_of(self.triangles.tags[slot as usize]).0
     }
 
-    /// Puts a ray into a lane; the answer's distances are longer by what is returned.
-    fn put(&self, packet: &mut Packet, lane: usize, ray: &Ray) -> f64 {
-        let origin = ray.origin_world - self.triangles.center_world;
+    /// The rays of a packet, and by how much their distances are shorter there.
+    #[inline]
+    fn place(&self, rays: &[Ray]) -> ([Lane; LANES], [f64; LANES]) {
         let far_m = FAR_START * self.extent_m();
-        let skipped =
-            if origin.length_squared() > far_m * far_m { origin.length() - 0.5 * far_m } else { 0.0 };
-        packet.set(lane, origin + ray.way * skipped, ray.way, ray.from_m - skipped, ray.to_m - skipped);
-        skipped
+        let mut skipped = [0.0; LANES];
+        let blank = Lane { origin: DVec3::ZERO, way: DVec3::X, t_min: 0.0, t_max: 0.0 };
+        let mut placed = [blank; LANES];
+        for ((ray, lane), skipped) in rays.iter().zip(&mut placed).zip(&mut skipped) {
+            let origin = ray.origin_world - self.triangles.center_world;
+            if origin.length_squared() > far_m * far_m {
+                *skipped = origin.length() - 0.5 * far_m;
+            }
+            *lane = Lane {
+                origin: origin + ray.way * *skipped,
+                way: ray.way,
+                t_min: ray.from_m - *skipped,
+                t_max: ray.to_m - *skipped,
+            };
+        }
+        (placed, skipped)
     }
 
-    /// What up to eight rays of sight meet first: surfaces that are mixed by alpha are looked through, and so are the backs
-    /// of single-sided ones and the holes of cut-outs.
+    /// What the rays of a packet meet first, [`LANES`] at most: surfaces that are mixed by alpha are looked through, and so
+    /// are the backs of single-sided ones and the holes of cut-outs.
     pub fn nearest(&self, rays: &[Ray], stack: &mut Stack) -> [Option<Found>; LANES] {
-        let mut packet = Packet::empty();
-        let mut skipped = [0.0; LANES];
-        for (lane, ray) in rays.iter().take(LANES).enumerate() {
-            skipped[lane] = self.put(&mut packet, lane, ray);
-        }
         let mut found = [None; LANES];
-        walk::find_nearest(self, &mut packet, &mut found, stack);
+        if rays.is_empty() {
+            return found;
+        }
+        let (placed, skipped) = self.place(rays);
+        walk::find_nearest(self, &placed[..rays.len().min(LANES)], &mut found, stack);
         for (found, skipped) in found.iter_mut().zip(skipped) {
             if let Some(found) = found {
                 found.distance_m += skipped;
@@ -142,24 +153,22 @@ impl<'a> Rays<'a> {
         found
     }
 
-    /// The share of light, for each colour, that passes along up to eight rays.
+    /// The share of light, for each colour, that passes along the rays of a packet, [`LANES`] at most.
     pub fn light_through(&self, rays: &[Ray], stack: &mut Stack) -> [Vec3; LANES] {
-        let mut packet = Packet::empty();
-        for (lane, ray) in rays.iter().take(LANES).enumerate() {
-            self.put(&mut packet, lane, ray);
-        }
         let mut light = [Vec3::ONE; LANES];
-        walk::pass_light(self, &mut packet, &mut light, stack);
+        if !rays.is_empty() {
+            let (placed, _) = self.place(rays);
+            walk::pass_light(self, &placed[..rays.len().min(LANES)], &mut light, stack);
+        }
         light
     }
 
     /// The first thing that takes light from a ray.
     pub fn blocker(&self, ray: &Ray, stack: &mut Stack) -> Option<Found> {
-        let mut packet = Packet::empty();
-        let skipped = self.put(&mut packet, 0, ray);
+        let (placed, skipped) = self.place(std::slice::from_ref(ray));
         let mut nearest = None;
-        walk::find_blocker(self, &mut packet, &mut nearest, stack);
-        nearest.map(|found: Found| Found { distance_m: found.distance_m + skipped, ..found })
+        walk::find_blocker(self, &placed[..1], &mut nearest, stack);
+        nearest.map(|found: Found| Found { distance_m: found.distance_m + skipped[0], ..found })
     }
 
     /// What a surface lets through where it was hit.

@@ -32,6 +32,7 @@ pub use emitter::{Emitter, ToLight};
 pub use eye::{Seen, Surfaces};
 pub use hierarchy::{Found, Ray, Rays, Stack};
 pub use metric::*;
+pub use packet::LANES;
 pub use samples::Samples;
 pub use visibility::{Place, Quality, Visibility};
 

@@ -15,11 +15,11 @@ pub type Mask = u8;
 /// never pass between them for rounding's sake.
 pub(crate) const GROWN: f64 = 1e-12;
 
-/// A coordinate of eight rays.
+/// A coordinate of all rays.
 pub(crate) type Lanes = [f32; LANES];
 pub(crate) type Lanes64 = [f64; LANES];
 
-/// Eight rays. All that a box needs is kept in single, all that a triangle needs in double precision.
+/// The rays. All that a box needs is kept in single, all that a triangle needs in double precision.
 #[derive(Clone, Copy, Debug)]
 pub struct Packet {
     pub(crate) origin: [Lanes64; 3],
@@ -38,54 +38,68 @@ pub struct Packet {
     pub active: Mask,
 }
 
-/// The least and greatest that a double can be in single precision.
+/// A single-precision number that is surely not above, or not below, a double.
+#[inline(always)]
 fn below(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) > x { rounded.next_down() } else { rounded }
+    let x = x as f32;
+    if x.is_finite() { x - x.abs() * f32::EPSILON } else { x }
 }
 
+#[inline(always)]
 fn above(x: f64) -> f32 {
-    let rounded = x as f32;
-    if f64::from(rounded) < x { rounded.next_up() } else { rounded }
+    let x = x as f32;
+    if x.is_finite() { x + x.abs() * f32::EPSILON } else { x }
+}
+
+/// A ray as a packet takes it: where it starts, where it goes, and between which multiples of `way` it counts.
+#[derive(Clone, Copy, Debug)]
+pub struct Lane {
+    /// Relative to the scene's middle.
+    pub origin: DVec3,
+    /// Unit length.
+    pub way: DVec3,
+    /// Nearer does not count.
+    pub t_min: f64,
+    /// Farther does not count; may be infinite.
+    pub t_max: f64,
 }
 
 impl Packet {
-    /// A packet without rays.
-    pub fn empty() -> Self {
-        Self {
+    /// A packet of one to [`LANES`] rays. Lanes that are left over repeat the last ray and are not active.
+    #[inline(always)]
+    pub fn new(rays: &[Lane]) -> Self {
+        let count = rays.len().clamp(1, LANES);
+        let ray = |lane: usize| &rays[lane.min(count - 1)];
+        let mut made = Self {
             origin: [[0.0; LANES]; 3],
-            way: [[1.0; LANES]; 3],
+            way: [[0.0; LANES]; 3],
             origin_f32: [[0.0; LANES]; 3],
-            inverse_f32: [[1.0; LANES]; 3],
-            t_min: [0.0; LANES],
-            t_max: [0.0; LANES],
+            inverse_f32: [[0.0; LANES]; 3],
+            t_min: std::array::from_fn(|lane| ray(lane).t_min),
+            t_max: std::array::from_fn(|lane| ray(lane).t_max),
             t_min_f32: [0.0; LANES],
-            t_max_f32: [-1.0; LANES],
-            lead: Vec3::X,
+            t_max_f32: [0.0; LANES],
+            lead: rays[0].way.as_vec3(),
             backwards: [0; 3],
-            active: 0,
-        }
-    }
-
-    /// Puts a ray into a lane: where it starts, where it goes, and between which multiples of `way` it counts.
-    pub fn set(&mut self, lane: usize, origin: DVec3, way: DVec3, t_min: f64, t_max: f64) {
-        if lane == 0 {
-            self.lead = way.as_vec3();
-        }
+            active: Mask::MAX >> (LANES - count),
+        };
         for axis in 0..3 {
-            self.origin[axis][lane] = origin[axis];
-            self.way[axis][lane] = way[axis];
-            self.origin_f32[axis][lane] = origin[axis] as f32;
-            // Never infinite: 0 times infinity has no order.
-            let way = way[axis] as f32;
-            let least = 1e-18f32.copysign(way);
-            self.inverse_f32[axis][lane] = 1.0 / if way.abs() < 1e-18 { least } else { way };
-            self.backwards[axis] |= Mask::from(way.is_sign_negative()) << lane;
+            made.origin[axis] = std::array::from_fn(|lane| ray(lane).origin[axis]);
+            made.way[axis] = std::array::from_fn(|lane| ray(lane).way[axis]);
+            for lane in 0..LANES {
+                made.origin_f32[axis][lane] = made.origin[axis][lane] as f32;
+                // Never infinite: 0 times infinity has no order.
+                let way = made.way[axis][lane] as f32;
+                let least = 1e-18f32.copysign(way);
+                made.inverse_f32[axis][lane] = 1.0 / if way.abs() < 1e-18 { least } else { way };
+                made.backwards[axis] |= Mask::from(way.is_sign_negative()) << lane;
+            }
         }
-        self.t_min[lane] = t_min;
-        self.t_min_f32[lane] = below(t_min);
-        self.active |= 1 << lane;
-        self.end_at(lane, t_max);
+        for lane in 0..LANES {
+            made.t_min_f32[lane] = below(made.t_min[lane]);
+            made.t_max_f32[lane] = above(made.t_max[lane]);
+        }
+        made
     }
 
     /// The ray counts only up to here.
@@ -135,73 +149,79 @@ impl Packet {
         (a - b).dot(self.lead) <= 0.0
     }
 
-    /// Where the rays of `mask` hit a triangle (Moeller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle
+    /// Which rays of `mask` hit a triangle (Moeller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle
     /// Intersection"). `front_only`: rays that come from its back pass.
     #[inline(always)]
-    pub fn hit_triangle(&self, corners: &[Vec3; 3], front_only: bool, mask: Mask) -> Hits {
+    pub fn hit_triangle(&self, corners: &[Vec3; 3], front_only: bool, mask: Mask) -> Mask {
+        let mut hits = 0;
+        for lane in lanes(mask) {
+            let Solved { turned, det, u, v, t } = self.solve(corners, lane);
+            // A determinant of 0 makes the strict ones false: rays within the plane pass.
+            let inside = (u >= -GROWN * det)
+                & (u <= (1.0 + GROWN) * det)
+                & (v >= -GROWN * det)
+                & (u + v <= (1.0 + GROWN) * det)
+                & (t > self.t_min[lane] * det)
+                & (t < self.t_max[lane] * det)
+                & (det > 0.0)
+                & !(front_only && turned);
+            hits |= Mask::from(inside) << lane;
+        }
+        hits
+    }
+
+    /// Where a ray that hits a triangle hits it.
+    pub fn hit_at(&self, corners: &[Vec3; 3], lane: usize) -> Hit {
+        let Solved { det, u, v, t, .. } = self.solve(corners, lane);
+        Hit { t: t / det, u: u / det, v: v / det }
+    }
+
+    #[inline(always)]
+    fn solve(&self, corners: &[Vec3; 3], lane: usize) -> Solved {
         let a = corners[0].as_dvec3();
         let (ab, ac) = (corners[1].as_dvec3() - a, corners[2].as_dvec3() - a);
-        let [ox, oy, oz] = &self.origin;
-        let [wx, wy, wz] = &self.way;
-        let (mut det, mut u, mut v, mut t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let mut bits = [0u64; LANES];
-        let back = if front_only { -1.0 } else { 1.0 };
-        for i in 0..LANES {
-            let (px, py, pz) =
-                (wy[i] * ac.z - wz[i] * ac.y, wz[i] * ac.x - wx[i] * ac.z, wx[i] * ac.y - wy[i] * ac.x);
-            let turned = ab.x * px + ab.y * py + ab.z * pz;
-            // From its back all signs are turned; undone here, so that nothing needs to be divided yet.
-            let sign = if turned < 0.0 { -1.0 } else { 1.0 };
-            det[i] = turned * if turned < 0.0 { -back } else { 1.0 };
-            let (sx, sy, sz) = (ox[i] - a.x, oy[i] - a.y, oz[i] - a.z);
-            u[i] = sign * (sx * px + sy * py + sz * pz);
-            let (qx, qy, qz) = (sy * ab.z - sz * ab.y, sz * ab.x - sx * ab.z, sx * ab.y - sy * ab.x);
-            v[i] = sign * (wx[i] * qx + wy[i] * qy + wz[i] * qz);
-            t[i] = sign * (ac.x * qx + ac.y * qy + ac.z * qz);
-            // A determinant of 0 makes the strict ones false: rays within the plane pass.
-            let inside = (u[i] >= -GROWN * det[i])
-                & (v[i] >= -GROWN * det[i])
-                & (u[i] + v[i] <= (1.0 + GROWN) * det[i])
-                & (t[i] > self.t_min[i] * det[i])
-                & (t[i] < self.t_max[i] * det[i])
-                & (det[i] > 0.0);
-            bits[i] = if inside { 1 << i } else { 0 };
+        let of_lane = |of: &[Lanes64; 3]| DVec3::new(of[0][lane], of[1][lane], of[2][lane]);
+        let way = of_lane(&self.way);
+        let p = way.cross(ac);
+        let det = ab.dot(p);
+        // From its back all signs are turned; undone here, so that nothing needs to be divided yet.
+        let sign = if det.is_sign_negative() { -1.0 } else { 1.0 };
+        let s = of_lane(&self.origin) - a;
+        let q = s.cross(ab);
+        Solved {
+            turned: det.is_sign_negative(),
+            det: sign * det,
+            u: sign * s.dot(p),
+            v: sign * way.dot(q),
+            t: sign * ac.dot(q),
         }
-        let mask = joined(bits) as Mask & mask;
-        Hits::new(mask, det, t, u, v)
     }
+}
+
+/// A ray's equation with a triangle's plane; `det`, above 0, still multiplies the others.
+struct Solved {
+    /// Does the ray come from the triangle's back?
+    turned: bool,
+    det: f64,
+    u: f64,
+    v: f64,
+    t: f64,
 }
 
 #[inline(always)]
-fn joined<T: Copy + std::ops::BitOr<Output = T>>(bits: [T; LANES]) -> T {
-    ((bits[0] | bits[4]) | (bits[2] | bits[6])) | ((bits[1] | bits[5]) | (bits[3] | bits[7]))
+fn joined<T: Copy + Default + std::ops::BitOr<Output = T>>(bits: [T; LANES]) -> T {
+    bits.into_iter().fold(T::default(), |joined, bit| joined | bit)
 }
 
-/// Where eight rays hit a triangle; only what `mask` names counts.
-#[derive(Clone, Copy, Debug)]
-pub struct Hits {
-    /// Which rays do.
-    pub mask: Mask,
-    /// Multiple of each ray's way.
-    pub t: Lanes64,
+/// Where a ray hits a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Multiple of the ray's way.
+    pub t: f64,
     /// Weight of the second corner.
-    pub u: Lanes64,
+    pub u: f64,
     /// Weight of the third corner.
-    pub v: Lanes64,
-}
-
-impl Hits {
-    /// From numbers that the determinant still multiplies.
-    #[inline(always)]
-    pub fn new(mask: Mask, det: Lanes64, mut t: Lanes64, mut u: Lanes64, mut v: Lanes64) -> Self {
-        for lane in lanes(mask) {
-            let inverse = 1.0 / det[lane];
-            t[lane] *= inverse;
-            u[lane] *= inverse;
-            v[lane] *= inverse;
-        }
-        Self { mask, t, u, v }
-    }
+    pub v: f64,
 }
 
 /// The lanes of a mask, lowest first.

@@ -9,7 +9,7 @@ const STEPS: f64 = (1u32 << 24) as f64;
 /// Points of the unit square, evenly spread: a (0, 2)-sequence (Burley 2020, "Practical Hash-based Owen Scrambling"), the
 /// same for every pixel but for a digital shift of its own, which keeps the even spread.
 ///
-/// Neighbours in the list are neighbours in the square, for any pixel: eight rays in a row then meet the same boxes.
+/// Neighbours in the list are neighbours in the square, for any pixel: rays in a row then meet the same boxes.
 #[derive(Clone, Debug)]
 pub struct Samples {
     digits: Vec<[u32; 2]>,

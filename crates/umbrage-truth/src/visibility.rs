@@ -1,7 +1,7 @@
 //! The truth of one light in one picture: what share of the light each pixel sees.
 
 use crate::emitter::Emitter;
-use crate::eye::{Seen, Surfaces, blocks, in_row_pairs, rows_of};
+use crate::eye::{Seen, Surfaces, blocks, in_bands, rows_of};
 use crate::hierarchy::{Ray, Rays, Stack};
 use crate::packet::LANES;
 use crate::samples::Samples;
@@ -106,7 +106,7 @@ impl Visibility {
         let receivers = place.iter().filter(|place| **place == Place::Receiver).count() as u64;
 
         let (v, samples) = if emitter.is_point() {
-            let row_pair = |y: u32, stack: &mut Stack| {
+            let band = |y: u32, stack: &mut Stack| {
                 let mut rows = rows_of(size, y, Vec3::ZERO);
                 for block in blocks(size, y) {
                     one_ray_each(
@@ -123,10 +123,10 @@ impl Visibility {
                 }
                 rows
             };
-            (in_row_pairs(size, progress, row_pair)?, 1)
+            (in_bands(size, progress, band)?, 1)
         } else {
             let samples = Samples::new(quality);
-            let row_pair = |y: u32, stack: &mut Stack| {
+            let band = |y: u32, stack: &mut Stack| {
                 let mut rows = rows_of(size, y, Vec3::ZERO);
                 for pixel in blocks(size, y).flatten() {
                     let index = at(pixel);
@@ -140,7 +140,7 @@ impl Visibility {
                 }
                 rows
             };
-            (in_row_pairs(size, progress, row_pair)?, quality.samples)
+            (in_bands(size, progress, band)?, quality.samples)
         };
         Ok(Self { size, v, place, samples, rays: receivers * u64::from(samples) })
     }

@@ -2,15 +2,15 @@
 //! way to test boxes and triangles, and is made for the instructions that this machine has.
 
 use crate::hierarchy::{Found, Rays, Stack};
-use crate::packet::{Hits, LANES, Mask, Packet, lanes};
+use crate::packet::{LANES, Lane, Mask, Packet, lanes};
 use glam::Vec3;
 use std::ops::Range;
 
 /// How rays are tested against a box and against a triangle.
 trait Box8: Fn(&Packet, Vec3, Vec3, Mask) -> Mask {}
 impl<T: Fn(&Packet, Vec3, Vec3, Mask) -> Mask> Box8 for T {}
-trait Triangle8: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Hits {}
-impl<T: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Hits> Triangle8 for T {}
+trait Triangle8: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Mask {}
+impl<T: Fn(&Packet, &[Vec3; 3], bool, Mask) -> Mask> Triangle8 for T {}
 
 /// Visits all leaves that rays of the packet reach; `visit` ends rays by taking them out of `packet.active` or by
 /// shortening them.
@@ -73,13 +73,13 @@ fn find_nearest_by(
                 continue;
             }
             let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, !tag.is_double_sided(), mask);
-            for lane in lanes(hits.mask) {
-                let hole = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
-                if tag.is_pierceable() && hole() {
+            for lane in lanes(hits) {
+                let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
+                if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v) != Vec3::ZERO {
                     continue;
                 }
-                packet.end_at(lane, hits.t[lane]);
-                found[lane] = Some(Found { distance_m: hits.t[lane], slot: slot as u32 });
+                packet.end_at(lane, hit.t);
+                found[lane] = Some(Found { distance_m: hit.t, slot: slot as u32 });
             }
         }
     });
@@ -98,16 +98,17 @@ fn pass_light_by(
         for slot in slots {
             let tag = rays.triangles.tags[slot];
             let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, false, mask & packet.active);
-            if hits.mask == 0 {
+            if hits == 0 {
                 continue;
             }
             if !tag.is_pierceable() {
-                packet.active &= !hits.mask;
-                lanes(hits.mask).for_each(|lane| light[lane] = Vec3::ZERO);
+                packet.active &= !hits;
+                lanes(hits).for_each(|lane| light[lane] = Vec3::ZERO);
                 continue;
             }
-            for lane in lanes(hits.mask) {
-                light[lane] *= rays.pierced(tag, hits.u[lane], hits.v[lane]);
+            for lane in lanes(hits) {
+                let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
+                light[lane] *= rays.pierced(tag, hit.u, hit.v);
                 if light[lane] == Vec3::ZERO {
                     packet.active &= !(1 << lane);
                 }
@@ -129,13 +130,13 @@ fn find_blocker_by(
         for slot in slots {
             let tag = rays.triangles.tags[slot];
             let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, false, mask);
-            for lane in lanes(hits.mask) {
-                let passes = || rays.pierced(tag, hits.u[lane], hits.v[lane]) != Vec3::ZERO;
-                if tag.is_pierceable() && passes() {
+            for lane in lanes(hits) {
+                let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
+                if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v) != Vec3::ZERO {
                     continue;
                 }
-                packet.end_at(lane, hits.t[lane]);
-                *nearest = Some(Found { distance_m: hits.t[lane], slot: slot as u32 });
+                packet.end_at(lane, hit.t);
+                *nearest = Some(Found { distance_m: hit.t, slot: slot as u32 });
             }
         }
     });
@@ -145,13 +146,14 @@ fn find_blocker_by(
 macro_rules! for_this_machine {
     ($(#[$doc:meta])* $name:ident, $by:ident, $out:ty) => {
         $(#[$doc])*
-        pub fn $name(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
+        pub fn $name(rays: &Rays<'_>, lanes: &[Lane], out: &mut $out, stack: &mut Stack) {
             #[cfg(target_arch = "x86_64")]
             {
                 use crate::packet_avx2::{hit_triangle, reach_box, reach_box_by};
 
                 #[target_feature(enable = "avx2")]
-                fn avx2(rays: &Rays<'_>, packet: &mut Packet, out: &mut $out, stack: &mut Stack) {
+                fn avx2(rays: &Rays<'_>, lanes: &[Lane], out: &mut $out, stack: &mut Stack) {
+                    let packet = &mut Packet::new(lanes);
                     let triangle =
                         |p: &Packet, corners: &[Vec3; 3], front, mask| hit_triangle(p, corners, front, mask);
                     match packet.agreed_sides() {
@@ -169,9 +171,10 @@ macro_rules! for_this_machine {
                 if is_x86_feature_detected!("avx2") {
                     // SAFETY: the machine was asked and has what the function is compiled for.
                     #[allow(unsafe_code)]
-                    return unsafe { avx2(rays, packet, out, stack) };
+                    return unsafe { avx2(rays, lanes, out, stack) };
                 }
             }
+            let packet = &mut Packet::new(lanes);
             $by(rays, packet, out, stack, Packet::reach_box, Packet::hit_triangle);
         }
     };

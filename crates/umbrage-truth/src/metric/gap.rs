@@ -1,7 +1,7 @@
 //! The gap between a caster and its shadow (peter-panning).
 
 use super::{Judged, grey, to_light};
-use crate::eye::{in_row_pairs, rows_of};
+use crate::eye::{in_bands, rows_of};
 use crate::hierarchy::{Ray, Rays, Stack};
 use crate::{Emitter, Place, Progress, Surfaces, TruthError, Visibility};
 use glam::{UVec2, Vec3};
@@ -61,7 +61,7 @@ impl Contacts {
             let (x, y) = surfaces.pixel_of(seen.p_world + along * foot.distance_m).filter(|_| same)?;
             Some(Contact { distance_m: foot.distance_m as f32, pixel: (x as f32, y as f32) })
         };
-        let row_pair = |y: u32, stack: &mut Stack| {
+        let band = |y: u32, stack: &mut Stack| {
             let mut rows = rows_of(size, y, None);
             for (row, pixels) in rows.iter_mut().enumerate() {
                 for (x, contact) in pixels.iter_mut().enumerate() {
@@ -70,7 +70,7 @@ impl Contacts {
             }
             rows
         };
-        Ok(Self { size, of_pixel: in_row_pairs(size, progress, row_pair)? })
+        Ok(Self { size, of_pixel: in_bands(size, progress, band)? })
     }
 
     /// The greatest distance from a contact to where its shadow begins, metres: every place from the contact on is lit
