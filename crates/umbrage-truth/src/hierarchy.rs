@@ -45,12 +45,50 @@ pub struct Found {
 pub struct Rays<'a> {
     scene: &'a Scene,
     pub(crate) triangles: Triangles,
-    pub(crate) nodes: Vec<Bvh2Node>,
+    /// Each has the boxes of its children; unused ones are [`NO_CHILD`]. The first is the root.
+    pub(crate) nodes: Vec<[Bvh2Node; 4]>,
 }
 
-/// Nodes that are still to be visited, each with the rays that reach it. Kept between rays to spare allocations.
+/// Nodes and leaves that are still to be visited: index of the node or of the leaf's first triangle, triangles (0: a
+/// node), and the rays that reach it. Kept between rays to spare allocations.
 #[derive(Debug, Default)]
-pub struct Stack(pub(crate) Vec<(u32, Mask)>);
+pub struct Stack(pub(crate) Vec<(u32, u32, Mask)>);
+
+/// Stands in a node that has less than four children.
+pub(crate) const NO_CHILD: u32 = u32::MAX;
+
+/// Takes every second level out of a binary hierarchy: half as many steps, each with as many boxes as the two together.
+fn four_wide(binary: &[Bvh2Node]) -> Vec<[Bvh2Node; 4]> {
+    let nobody = || Bvh2Node { first_index: NO_CHILD, ..Bvh2Node::default() };
+    let area = |node: &Bvh2Node| {
+        let size = node.max - node.min;
+        size.x * size.y + size.y * size.z + size.z * size.x
+    };
+    let mut wide = vec![[nobody(); 4]];
+    // Which node's children go where.
+    let mut todo = vec![(binary[0], 0usize)];
+    while let Some((node, place)) = todo.pop() {
+        let mut children = vec![node];
+        // The largest inner node gives way to its two children.
+        while children.len() < 4 {
+            let inner = (0..children.len()).filter(|i| children[*i].prim_count == 0);
+            let largest = inner.max_by(|a, b| area(&children[*a]).total_cmp(&area(&children[*b])));
+            let Some(largest) = largest else { break };
+            let first = children.swap_remove(largest).first_index as usize;
+            children.extend_from_slice(&binary[first..first + 2]);
+        }
+        for (slot, child) in children.into_iter().enumerate() {
+            let mut kept = child;
+            if child.prim_count == 0 {
+                kept.first_index = wide.len() as u32;
+                todo.push((child, wide.len()));
+                wide.push([nobody(); 4]);
+            }
+            wide[place][slot] = kept;
+        }
+    }
+    wide
+}
 
 impl<'a> Rays<'a> {
     /// Builds the hierarchy, on all cores.
@@ -69,11 +107,10 @@ impl<'a> Rays<'a> {
         triangles.corners = order.iter().map(|i| triangles.corners[*i as usize]).collect();
         triangles.tags = order.iter().map(|i| triangles.tags[*i as usize]).collect();
         let margin = Vec3::splat(BOX_MARGIN * triangles.extent_m.max(f32::MIN_POSITIVE));
-        let mut nodes = built.nodes;
-        nodes.shrink_to_fit();
-        for node in &mut nodes {
-            node.min -= margin;
-            node.max += margin;
+        let mut nodes = four_wide(&built.nodes);
+        for child in nodes.iter_mut().flatten() {
+            child.min -= margin;
+            child.max += margin;
         }
         Ok(Self { scene, triangles, nodes })
     }

@@ -143,10 +143,10 @@ impl Packet {
         joined(bits) as Mask & mask
     }
 
-    /// Does the first of the rays come by `a` before it comes by `b`?
+    /// How far along the first ray's way a place lies; a measure for order only.
     #[inline(always)]
-    pub fn meets_first(&self, a: Vec3, b: Vec3) -> bool {
-        (a - b).dot(self.lead) <= 0.0
+    pub fn along(&self, p: Vec3) -> f32 {
+        p.dot(self.lead)
     }
 
     /// Which rays of `mask` hit a triangle (Moeller and Trumbore 1997, "Fast, Minimum Storage Ray/Triangle

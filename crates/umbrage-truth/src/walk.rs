@@ -1,7 +1,7 @@
 //! Walks of packets through the hierarchy: what is nearest, how much light passes, what blocks it. Each exists once, for any
 //! way to test boxes and triangles, and is made for the instructions that this machine has.
 
-use crate::hierarchy::{Found, Rays, Stack};
+use crate::hierarchy::{Found, NO_CHILD, Rays, Stack};
 use crate::packet::{LANES, Lane, Mask, Packet, lanes};
 use glam::Vec3;
 use std::ops::Range;
@@ -25,34 +25,40 @@ fn walk(
     let stack = &mut stack.0;
     stack.clear();
     if !rays.nodes.is_empty() {
-        stack.push((0, packet.active));
+        stack.push((0, 0, packet.active));
     }
-    while let Some((index, mask)) = stack.pop() {
+    while let Some((index, count, mask)) = stack.pop() {
         let mask = mask & packet.active;
         if mask == 0 {
             continue;
         }
-        let node = &rays.nodes[index as usize];
-        if node.prim_count > 0 {
-            let first = node.first_index as usize;
-            visit(packet, mask, first..first + node.prim_count as usize);
+        if count > 0 {
+            visit(packet, mask, index as usize..(index + count) as usize);
             if packet.active == 0 {
                 return;
             }
             continue;
         }
-        let (left, right) = (node.first_index, node.first_index + 1);
-        let (l, r) = (&rays.nodes[left as usize], &rays.nodes[right as usize]);
-        let in_left = (left, reach_box(packet, l.min, l.max, mask));
-        let in_right = (right, reach_box(packet, r.min, r.max, mask));
-        // The nearer one last, so that it is visited first.
-        let left_first = packet.meets_first(l.min + l.max, r.min + r.max);
-        let (near, far) = if left_first { (in_left, in_right) } else { (in_right, in_left) };
-        if far.1 != 0 {
-            stack.push(far);
-        }
-        if near.1 != 0 {
-            stack.push(near);
+        // Those that are reached, nearest last, so that it is visited first.
+        let bottom = stack.len();
+        let mut away = [0.0; 4];
+        for child in &rays.nodes[index as usize] {
+            if child.first_index == NO_CHILD {
+                break;
+            }
+            let reached = reach_box(packet, child.min, child.max, mask);
+            if reached == 0 {
+                continue;
+            }
+            let far = packet.along(child.min + child.max);
+            stack.push((child.first_index, child.prim_count, reached));
+            let mut place = stack.len() - 1 - bottom;
+            while place > 0 && away[place - 1] < far {
+                away[place] = away[place - 1];
+                stack.swap(bottom + place, bottom + place - 1);
+                place -= 1;
+            }
+            away[place] = far;
         }
     }
 }
