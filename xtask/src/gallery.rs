@@ -28,7 +28,9 @@ struct Picture {
     /// Below [`FOLDER`], without its ending.
     file: &'static str,
     caption: &'static str,
-    /// What stands between `umbrage render` and `--size`.
+    /// `render` or `truth`.
+    command: &'static str,
+    /// What stands between the command and `--size`.
     arguments: &'static str,
 }
 
@@ -41,7 +43,7 @@ impl Picture {
     fn words(&self) -> Vec<String> {
         let tail = ["--size", "640x360", "--msaa", "4", "-o"].map(str::to_owned);
         let words = self.arguments.split_whitespace().map(str::to_owned).chain(tail);
-        std::iter::once("render".to_owned()).chain(words).chain([self.path()]).collect()
+        std::iter::once(self.command.to_owned()).chain(words).chain([self.path()]).collect()
     }
 
     /// The scene's file, when it is none of ours.

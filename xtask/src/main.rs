@@ -7,6 +7,7 @@ mod bless;
 mod checks;
 mod demo;
 mod gallery;
+mod guide;
 mod links;
 mod machine;
 mod picture;
@@ -57,6 +58,12 @@ const TASKS: &[Task] = &[
         takes: "",
         summary: "draw the pictures of docs/gallery and write docs/gallery.md",
         run: gallery::run,
+    },
+    Task {
+        name: "guide",
+        takes: "",
+        summary: "measure the techniques on the built-in scenes and write docs/guide.md",
+        run: guide::run,
     },
     Task {
         name: "setup",

@@ -7,7 +7,7 @@ use std::fmt::Write;
 const HEAD: &str = "# Gallery
 
 Every picture here was drawn by the command beneath it; `cargo xtask gallery` draws them all anew and writes this page.
-The ids are those of the capabilities that Umbrage is built by: H hardware shadow maps, F effects.
+The ids are those of the capabilities that Umbrage is built by: H hardware shadow maps, F effects, B beyond them.
 ";
 
 /// The page with those pictures that `is_there`.
