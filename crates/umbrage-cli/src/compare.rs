@@ -53,7 +53,7 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
     let techniques = all_settings(&ids, &args.set, stage.map_size)?;
     let plan = Plan {
         cameras: cameras(args, &stage)?,
-        lights: (0..stage.scene.lights.len()).collect(),
+        light_numbers: stage.light_numbers.clone(),
         options: RenderOptions { samples: 1, ..setup::options(&args.scene, &stage, techniques[0].clone()) },
         techniques,
         quality: quality(&args.quality),
@@ -64,7 +64,6 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
     let mut measured = compare(&gpu, &stage.scene, &plan, &|label: &str, share| progress.at(label, share))?;
     drop(progress);
     for row in &mut measured.rows {
-        row.light = stage.light_numbers[row.light];
         row.command = command_of(row, args, &plan, stage.light_numbers.len());
     }
     let mut warnings = stage.scene.warnings.clone();

@@ -44,8 +44,8 @@ impl Cameras {
 pub struct Plan {
     /// From where.
     pub cameras: Cameras,
-    /// Which of the scene's lights, each alone.
-    pub lights: Vec<usize>,
+    /// What each of the scene's lights is called in rows: its number, before any were left out.
+    pub light_numbers: Vec<usize>,
     /// Which techniques, with their parameters.
     pub techniques: Vec<Settings>,
     /// How truth is found.
@@ -171,7 +171,7 @@ pub fn compare(
     let groups = plan.cameras.groups();
     let frames: usize = groups.iter().map(|(_, frames)| frames.len()).sum();
     // The truth of a frame counts as much as a technique's.
-    let steps = (plan.lights.len() * frames * (1 + plan.techniques.len())).max(1) as f32;
+    let steps = (scene.lights.len() * frames * (1 + plan.techniques.len())).max(1) as f32;
     progress_to(progress, "building the ray hierarchy", 0.0)?;
     let start = Instant::now();
     let rays = Rays::new(scene)?;
@@ -183,10 +183,10 @@ pub fn compare(
         warnings: Vec::new(),
     };
     let mut step = 0;
-    for &light in &plan.lights {
-        let alone = Scene { lights: vec![scene.lights[light].clone()], ..scene.clone() };
+    for (light, number) in scene.lights.iter().zip(&plan.light_numbers) {
+        let alone = Scene { lights: vec![light.clone()], ..scene.clone() };
         for (camera, (name, cameras)) in groups.iter().enumerate() {
-            let at = At { id: format!("c{camera}-l{light}"), name, light };
+            let at = At { id: format!("c{camera}-l{number}"), name, light: *number };
             let steps_done = |label: &str, done: f32| progress(label, (step as f32 + done) / steps);
             measure_group(gpu, &rays, &alone, plan, &at, cameras, &mut made, &steps_done)?;
             step += cameras.len() * (1 + plan.techniques.len());

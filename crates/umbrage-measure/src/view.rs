@@ -180,6 +180,6 @@ pub(crate) fn name_of(index: usize, name: &str, light: &Light) -> String {
     if name.is_empty() || name.starts_with("--light") {
         format!("light {index} ({kind})")
     } else {
-        format!("light {index} `{name}` ({kind})")
+        format!("light {index}: {name} ({kind})")
     }
 }

@@ -41,7 +41,7 @@ fn settings(technique: &str, pairs: &[(&str, &str)]) -> Settings {
 fn plan(scene: &Scene, techniques: Vec<Settings>) -> Plan {
     Plan {
         cameras: Cameras::Each(vec![("first".into(), scene.cameras[0].camera)]),
-        lights: (0..scene.lights.len()).collect(),
+        light_numbers: (0..scene.lights.len()).collect(),
         quality: Quality { samples: 32, seed: 0 },
         frames: 1,
         options: RenderOptions { size: UVec2::splat(SIDE), ..RenderOptions::new(techniques[0].clone()) },
