@@ -550,7 +550,7 @@
     mark(null);
     $("compare").hidden = !row;
     if (!row) return;
-    $("summary").replaceChildren(el("b", {}, nameOf(row)), row.summary ? `: ${row.summary}` : "");
+    $("summary").replaceChildren(el("b", {}, nameOf(row)), row.summary ? `: ${row.summary.replaceAll("`", "")}` : "");
     command($("technique-command"), row.command);
     const work = [many(row.passes, "pass", "passes"), many(row.draws, "draw"), many(row.triangles, "triangle"), many(row.texels, "texel"), `${fixed(row.memory_bytes / 2 ** 20, 2)}${NBSP}MiB`, `${many(row.taps, "map lookup")} for each receiver`];
     $("counts").textContent = work.join(", ") + ".";

@@ -32,6 +32,8 @@ struct Edge {
 #[derive(Clone, Debug)]
 pub struct Edges {
     edges: Vec<Edge>,
+    /// A line across an edge ends where the receiver does: beyond it V says nothing of this edge.
+    receivers: Vec<bool>,
     width: usize,
     height: usize,
 }
@@ -45,7 +47,7 @@ impl Edges {
     pub fn new(rays: &Rays<'_>, surfaces: &Surfaces, light: &Light, judged: &Judged) -> Self {
         let emitter = Emitter::new(light);
         let (width, height) = (surfaces.size.x as usize, surfaces.size.y as usize);
-        let mut found = Self { edges: Vec::new(), width, height };
+        let mut found = Self { edges: Vec::new(), receivers: judged.receivers().to_vec(), width, height };
         if emitter.is_point() {
             return found;
         }
@@ -94,19 +96,25 @@ impl Edges {
 
     fn width_px(&self, edge: &Edge, v: &[Vec3]) -> Option<f64> {
         let along = |px: f32| self.blended(edge.at_px + edge.to_light_px * px, v);
-        // Outwards from where the truth is half lit to where the answer is, if it is near.
         let steps = (LONGEST_PX / STEP_PX) as i32;
+        // Both ways from where the truth is half lit to where the answer is, each way as far as the receiver goes.
         let crossing = |level: f32| {
-            (0..steps).flat_map(|i| [i, -i]).find_map(|i| {
-                let (a, b) = (i as f32 * STEP_PX, (i + 1) as f32 * STEP_PX);
-                let (low, high) = (along(a)?, along(b)?);
-                (low <= level && high > level).then(|| a + (level - low) / (high - low) * STEP_PX)
+            let mut goes_on = [true; 2];
+            (0..steps).find_map(|i| {
+                [i, -i - 1].into_iter().zip(&mut goes_on).find_map(|(i, goes_on)| {
+                    let a = i as f32 * STEP_PX;
+                    let (Some(low), Some(high), true) = (along(a), along(a + STEP_PX), *goes_on) else {
+                        *goes_on = false;
+                        return None;
+                    };
+                    (low <= level && high > level).then(|| a + (level - low) / (high - low) * STEP_PX)
+                })
             })
         };
         Some(f64::from((crossing(0.9)? - crossing(0.1)?).abs()))
     }
 
-    /// A value between pixel centres; `None` outside of the picture.
+    /// A value between pixel centres; `None` outside of the picture and beside what is no receiver.
     fn blended(&self, at_px: Vec2, v: &[Vec3]) -> Option<f32> {
         let at = at_px - 0.5;
         let corner = at.floor();
@@ -117,8 +125,11 @@ impl Edges {
             return None;
         }
         let share = at - corner;
-        let value =
-            |dx: usize, dy: usize| grey(v[(corner.y as usize + dy) * self.width + corner.x as usize + dx]);
+        let pixel = |dx: usize, dy: usize| (corner.y as usize + dy) * self.width + corner.x as usize + dx;
+        if ![(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().all(|(dx, dy)| self.receivers[pixel(dx, dy)]) {
+            return None;
+        }
+        let value = |dx: usize, dy: usize| grey(v[pixel(dx, dy)]);
         let row = |dy: usize| value(0, dy) * (1.0 - share.x) + value(1, dy) * share.x;
         Some(row(0) * (1.0 - share.y) + row(1) * share.y)
     }
@@ -196,7 +207,7 @@ mod tests {
     /// A picture of 64x8 with one edge at column 32, expected to be 4 m wide, a pixel is 0.5 m across the edge.
     fn one_edge() -> Edges {
         let edge = Edge { at_px: Vec2::new(32.0, 4.0), to_light_px: Vec2::X, across_m: 0.5, expected_m: 4.0 };
-        Edges { edges: vec![edge], width: 64, height: 8 }
+        Edges { edges: vec![edge], receivers: vec![true; 64 * 8], width: 64, height: 8 }
     }
 
     /// V as a ramp around the edge, so many pixels from 0 to 1.
@@ -214,6 +225,16 @@ mod tests {
         assert!((wide - 2.0).abs() < 1e-3, "{wide}");
         let hard = one_edge().ratio(&ramp(0.01)).expect("an edge");
         assert!(hard < 0.11, "{hard}");
+    }
+
+    #[test]
+    fn what_lies_beyond_the_receiver_is_no_edge() {
+        let mut edges = one_edge();
+        // V of 0 on something else, ten pixels away.
+        let v: Vec<Vec3> = (0..64 * 8).map(|i| if i % 64 < 22 { Vec3::ZERO } else { Vec3::ONE }).collect();
+        assert!(edges.ratio(&v).is_some());
+        edges.receivers = (0..64 * 8).map(|i| i % 64 != 22).collect();
+        assert_eq!(edges.ratio(&v), None);
     }
 
     #[test]
