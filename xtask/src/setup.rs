@@ -1,4 +1,4 @@
-//! What the machine needs: a C++ compiler, and something that speaks Vulkan.
+//! What the machine needs: a C++ compiler, something that speaks Vulkan, and for the tests a browser.
 //!
 //! On Debian and its kin, as root (a container, a build machine), what lacks is installed. Everywhere else we say what to
 //! type: nobody wants a build to ask for a password.
@@ -7,13 +7,15 @@ use crate::process::{self, Done, Fault, failed};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// For what a graphics adapter is needed.
+/// For what the machine is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Any will do.
+    /// Any graphics adapter will do.
     Draw,
     /// Golden images compare on one rasteriser alone: lavapipe, Mesa's in software.
     Goldens,
+    /// Golden images, and a browser in which the page of a report is opened.
+    Tests,
 }
 
 /// Something that lacks, with its packages for each family of systems.
@@ -21,6 +23,7 @@ pub enum Need {
 enum Lack {
     Compiler,
     Vulkan,
+    Browser,
 }
 
 /// A family of Linux systems that share a package manager.
@@ -41,11 +44,15 @@ const DRIVER_FOLDERS: [&str; 4] = [
     "/run/opengl-driver/share/vulkan/icd.d",
 ];
 
+/// What browsers are called that the tests can drive; those look for the same names.
+const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+
 impl Lack {
     fn what(self) -> &'static str {
         match self {
             Self::Compiler => "a C and C++ compiler (the crate `meshopt` is C++)",
             Self::Vulkan => "a Vulkan driver and its loader",
+            Self::Browser => "Chromium or Chrome for the tests (UMBRAGE_BROWSER may name one)",
         }
     }
 
@@ -60,6 +67,8 @@ impl Lack {
             (Self::Vulkan, Family::Arch) => &["vulkan-swrast", "vulkan-icd-loader"],
             (Self::Vulkan, Family::Suse) => &["libvulkan_lvp", "libvulkan1"],
             (Self::Vulkan, Family::Other) => &["Mesa's lavapipe", "the Vulkan loader (libvulkan.so.1)"],
+            (Self::Browser, Family::Other) => &["Chromium"],
+            (Self::Browser, _) => &["chromium"],
         }
     }
 }
@@ -103,7 +112,7 @@ impl Family {
 
 /// `cargo xtask setup`
 pub fn run(_: &[String]) -> Done {
-    before_build(Need::Goldens)?;
+    before_build(Need::Tests)?;
     process::build_umbrage("debug")?;
     after_build()?;
     println!("This machine has all that Umbrage needs. `umbrage doctor` says what it can do.");
@@ -161,7 +170,16 @@ fn lacking(need: Need) -> Vec<Lack> {
     if cfg!(target_os = "linux") && !(has_driver(need) && has_loader()) {
         lacking.push(Lack::Vulkan);
     }
+    if cfg!(target_os = "linux") && need == Need::Tests && !has_browser() {
+        lacking.push(Lack::Browser);
+    }
     lacking
+}
+
+fn has_browser() -> bool {
+    // As with compilers, a variable is the user's word; the tests say so when nothing is there.
+    let named = std::env::var_os("UMBRAGE_BROWSER").is_some_and(|name| !name.is_empty());
+    named || BROWSERS.into_iter().any(process::is_installed)
 }
 
 /// Files that describe Vulkan drivers.
@@ -235,7 +253,13 @@ fn provide(lacking: &[Lack]) -> Result<(), Fault> {
     apt(&["update"])?;
     let mut install = vec!["install", "-y", "--no-install-recommends"];
     install.extend(packages);
-    apt(&install)
+    match apt(&install) {
+        // Ubuntu has it as a snap alone, which no container runs.
+        Err(Fault::Failed(why)) if lacking.contains(&Lack::Browser) => Err(failed(format!(
+            "{why}; where apt-get has no chromium (Ubuntu), install Google Chrome or name a browser in UMBRAGE_BROWSER"
+        ))),
+        done => done,
+    }
 }
 
 #[cfg(test)]
@@ -259,12 +283,28 @@ mod tests {
 
     #[test]
     fn advice_is_one_line_that_can_be_typed() {
-        let both = [Lack::Compiler, Lack::Vulkan];
-        let debian = advice(&both, Family::Debian);
-        assert!(debian.contains("build-essential mesa-vulkan-drivers libvulkan1`"), "{debian}");
+        let all = [Lack::Compiler, Lack::Vulkan, Lack::Browser];
+        let debian = advice(&all, Family::Debian);
+        assert!(debian.contains("build-essential mesa-vulkan-drivers libvulkan1 chromium`"), "{debian}");
         for family in [Family::Debian, Family::Fedora, Family::Arch, Family::Suse, Family::Other] {
-            assert_eq!(advice(&both, family).lines().count(), 1);
+            assert_eq!(advice(&all, family).lines().count(), 1);
+            let browser = advice(&[Lack::Browser], family);
+            let words = match family {
+                Family::Other => "install Chromium,".to_owned(),
+                _ => format!("type `{}chromium`,", family.command()),
+            };
+            assert!(browser.contains(&words), "{browser}");
         }
+    }
+
+    #[test]
+    fn only_tests_need_a_browser_and_they_look_for_the_same() {
+        for need in [Need::Draw, Need::Goldens] {
+            assert!(!lacking(need).contains(&Lack::Browser), "{need:?}");
+        }
+        let client = process::root().join("crates/umbrage-cli/tests/browser/mod.rs");
+        let client = std::fs::read_to_string(client).expect("what drives the browser");
+        assert!(client.contains(&format!(" = {BROWSERS:?};")), "{BROWSERS:?} are not the names there");
     }
 
     #[test]

@@ -13,13 +13,13 @@ struct Step {
     advice: &'static str,
 }
 
-/// Golden images exist for lavapipe alone, and lavapipe is at home on Linux.
+/// Golden images exist for lavapipe alone, and lavapipe is at home on Linux. A browser is easily had there, too.
 const HAS_GOLDENS: bool = cfg!(target_os = "linux");
 
 const STEPS: &[Step] = &[
     Step {
         name: "set up",
-        run: || setup::before_build(if HAS_GOLDENS { Need::Goldens } else { Need::Draw }),
+        run: || setup::before_build(if HAS_GOLDENS { Need::Tests } else { Need::Draw }),
         advice: "install what is named above",
     },
     Step {
@@ -93,8 +93,8 @@ pub fn run(_: &[String]) -> Done {
 fn tests() -> Done {
     let mut test = process::cargo(["test", "--workspace"]);
     if HAS_GOLDENS {
-        // A golden test that finds no lavapipe skips; here that is a failure.
-        test.env("UMBRAGE_GOLDEN_REQUIRED", "1");
+        // A golden test that finds no lavapipe skips, and a page's test that finds no browser; here that is a failure.
+        test.env("UMBRAGE_GOLDEN_REQUIRED", "1").env("UMBRAGE_BROWSER_REQUIRED", "1");
     }
     process::run(&mut test)
 }
