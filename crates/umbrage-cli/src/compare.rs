@@ -252,19 +252,19 @@ fn describe(report: &Report<'_>, measured: &Comparison) -> String {
         for row in measured.rows.iter().filter(|row| row.view == view.id) {
             rows.push(vec![
                 row.technique.to_owned(),
-                percent(row.false_shadow),
-                percent(row.false_light),
-                format!("{:.4}", row.rmse),
-                percent(row.acne),
-                percent(row.leak),
-                format!("{:.4}", row.edge),
-                percent(row.band),
+                percent(row.errors.false_shadow),
+                percent(row.errors.false_light),
+                format!("{:.4}", row.errors.rmse),
+                percent(row.errors.acne),
+                percent(row.errors.leak),
+                format!("{:.4}", row.errors.edge),
+                percent(row.errors.band),
                 optional(row.gap_m),
                 optional(row.penumbra),
                 optional(row.flicker),
                 format!("{:.4}", row.flip),
-                format!("{:.2}", row.cost_ms),
-                text::bytes(row.memory_bytes),
+                format!("{:.2}", row.cost.cost_ms),
+                text::bytes(row.cost.memory_bytes),
             ]);
         }
         let receivers = text::count(view.receivers as u64);

@@ -73,20 +73,9 @@ pub struct Row {
     pub camera: String,
     /// Choices and parameters.
     pub params: Map<String, Value>,
-    /// Mean of max(0, V* - V).
-    pub false_shadow: f64,
-    /// Mean of max(0, V - V*).
-    pub false_light: f64,
-    /// Root of the mean square of V - V*.
-    pub rmse: f64,
-    /// Share of sure receivers that are lit in truth and darker than 0.95.
-    pub acne: f64,
-    /// Share of sure receivers that are dark in truth and brighter than 0.05.
-    pub leak: f64,
-    /// Mean of |V - V*| in the edge band.
-    pub edge: f64,
-    /// Share of receivers in the edge band.
-    pub band: f64,
+    /// Means over all frames.
+    #[serde(flatten)]
+    pub errors: Errors,
     /// From a contact to where its shadow begins, metres.
     pub gap_m: Option<f64>,
     /// Width of soft edges over that of similar triangles.
@@ -95,30 +84,9 @@ pub struct Row {
     pub flicker: Option<f64>,
     /// Perceptual difference of the final picture.
     pub flip: f64,
-    /// Median of what the shadow adds to a frame.
-    pub cost_ms: f64,
-    /// Its least.
-    pub cost_min_ms: f64,
-    /// Its greatest.
-    pub cost_max_ms: f64,
-    /// Frame with shadows.
-    pub frame_ms: f64,
-    /// Frame without.
-    pub unshadowed_ms: f64,
-    /// Memory of the maps.
-    pub memory_bytes: u64,
-    /// Passes that make the shadow.
-    pub passes: u64,
-    /// Their draw calls.
-    pub draws: u64,
-    /// Their triangles.
-    pub triangles: u64,
-    /// Texels drawn.
-    pub texels: u64,
-    /// Lookups for each lit pixel.
-    pub taps: u64,
-    /// All passes of the frame.
-    pub pass_names: Vec<String>,
+    /// Times and counts.
+    #[serde(flatten)]
+    pub cost: Cost,
     /// Picture, below the report's folder.
     pub r#final: String,
     /// V.
@@ -276,15 +244,7 @@ fn frame_of<'a>(truth: &'a ViewTruth, v: &'a [Vec3]) -> Frame<'a> {
 impl Running {
     /// Means over the frames; the gap is the greatest of any.
     fn put(&self, row: &mut Row) {
-        let count = self.errors.len().max(1) as f64;
-        let mean = |of: fn(&Errors) -> f64| self.errors.iter().map(of).sum::<f64>() / count;
-        row.false_shadow = mean(|e| e.false_shadow);
-        row.false_light = mean(|e| e.false_light);
-        row.rmse = mean(|e| e.rmse);
-        row.acne = mean(|e| e.acne);
-        row.leak = mean(|e| e.leak);
-        row.edge = mean(|e| e.edge);
-        row.band = mean(|e| e.band);
+        row.errors = Errors::mean(&self.errors);
         row.gap_m = self.gaps_m.iter().copied().reduce(f64::max);
         let average = |list: &[f64]| (!list.is_empty()).then(|| list.iter().sum::<f64>() / list.len() as f64);
         row.penumbra = average(&self.penumbrae);
@@ -389,29 +349,12 @@ fn row(
         light: at.light,
         camera: at.name.to_owned(),
         params: params(settings),
-        false_shadow: 0.0,
-        false_light: 0.0,
-        rmse: 0.0,
-        acne: 0.0,
-        leak: 0.0,
-        edge: 0.0,
-        band: 0.0,
+        errors: Errors::default(),
         gap_m: None,
         penumbra: None,
         flicker: None,
         flip: flip(reference, &picture, size.x, size.y),
-        cost_ms: cost.cost_ms,
-        cost_min_ms: cost.cost_min_ms,
-        cost_max_ms: cost.cost_max_ms,
-        frame_ms: cost.frame_ms,
-        unshadowed_ms: cost.unshadowed_ms,
-        memory_bytes: cost.memory_bytes,
-        passes: cost.passes,
-        draws: cost.draws,
-        triangles: cost.triangles,
-        texels: cost.texels,
-        taps: cost.taps,
-        pass_names: cost.pass_names,
+        cost,
         r#final: file("final"),
         visibility: file("visibility"),
         heat: file("heat"),

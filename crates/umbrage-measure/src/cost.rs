@@ -2,12 +2,13 @@
 
 use crate::MeasureError;
 use crate::numbers::median;
+use serde::Serialize;
 use umbrage_render::umbrage::core::plan::{Draws, plan};
 use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_render::{Measure, Renderer};
 
 /// Times in milliseconds, and counts of the passes that make the shadow.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Cost {
     /// Median of the differences between neighbouring frames with and without shadows. Noise may make it negative.
     pub cost_ms: f64,

@@ -66,7 +66,7 @@ fn sun_of(scene: &Scene) -> Light {
 
 /// Pixels of a share of the sure ones.
 fn pixels(row: &Row, share: f64, receivers: usize) -> usize {
-    (share * (1.0 - row.band) * receivers as f64).round() as usize
+    (share * (1.0 - row.errors.band) * receivers as f64).round() as usize
 }
 
 #[test]
@@ -87,7 +87,8 @@ fn away_from_edges_the_map_is_right() {
             assert!(receivers > 2000 && excluded * 1000 < u64::from(SIDE * SIDE), "{name}: {excluded}");
             for row in &found.rows[1..] {
                 let sure = pixels(row, 1.0, receivers);
-                let (acne, leak) = (pixels(row, row.acne, receivers), pixels(row, row.leak, receivers));
+                let (acne, leak) =
+                    (pixels(row, row.errors.acne, receivers), pixels(row, row.errors.leak, receivers));
                 println!("{name} parallel {parallel} {}: {acne} acne, {leak} leak of {sure}", row.technique);
                 assert!(sure > 800, "{name}: the truth must have something to say: {sure}");
                 // A coarse curved mesh keeps a pixel near its terminator, where the neighbouring facet is steeper than
@@ -99,13 +100,16 @@ fn away_from_edges_the_map_is_right() {
                 assert!(gap_m < 0.03, "{name} {}: a gap of {gap_m} m", row.technique);
             }
             let [none, .., linear] = found.rows.as_slice() else { panic!("three rows") };
-            assert!(none.false_shadow < 1e-6 && none.acne == 0.0);
+            assert!(none.errors.false_shadow < 1e-6 && none.errors.acne == 0.0);
             if name != "tilt" {
                 assert!(
-                    pixels(none, none.leak, receivers) > 20,
+                    pixels(none, none.errors.leak, receivers) > 20,
                     "{name}: without shadows there must be light"
                 );
-                assert!(none.rmse > 3.0 * linear.rmse && none.flip > 2.0 * linear.flip, "{name}");
+                assert!(
+                    none.errors.rmse > 3.0 * linear.errors.rmse && none.flip > 2.0 * linear.flip,
+                    "{name}"
+                );
             }
         }
     }
@@ -128,22 +132,25 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
     let (bias, uniform) = biases
         .iter()
         .zip(&found.rows[1..])
-        .find(|(_, row)| row.acne <= slope.acne)
+        .find(|(_, row)| row.errors.acne <= slope.errors.acne)
         .expect("some uniform bias is large enough");
     let receivers = found.views[0].receivers;
     for (name, row) in [("slope-scaled", slope), ("least uniform without more acne", uniform)] {
         println!(
             "{name}: {} of {} sure pixels leak, gap {:.4} m, false light {:.3} %, false shadow {:.3} %",
-            pixels(row, row.leak, receivers),
+            pixels(row, row.errors.leak, receivers),
             pixels(row, 1.0, receivers),
             row.gap_m.unwrap_or(0.0),
-            100.0 * row.false_light,
-            100.0 * row.false_shadow
+            100.0 * row.errors.false_light,
+            100.0 * row.errors.false_shadow
         );
     }
     println!("the uniform bias is {bias} of the depth range");
-    assert!(uniform.leak > slope.leak && uniform.gap_m > slope.gap_m);
-    assert!(uniform.false_light > 1.1 * slope.false_light && uniform.false_shadow > 1.5 * slope.false_shadow);
+    assert!(uniform.errors.leak > slope.errors.leak && uniform.gap_m > slope.gap_m);
+    assert!(
+        uniform.errors.false_light > 1.1 * slope.errors.false_light
+            && uniform.errors.false_shadow > 1.5 * slope.errors.false_shadow
+    );
 }
 
 /// A light with a shape: maps of today are hard, so their edges are too narrow, and the truth says so.
@@ -156,7 +163,11 @@ fn hard_shadows_of_a_wide_light_are_too_narrow() {
     let row = &found.rows[0];
     let width = row.penumbra.expect("soft edges");
     println!("{} soft edges, {width:.3} of their width", found.views[0].soft_edges);
-    assert!(found.views[0].soft_edges > 20 && width < 0.4 && row.rmse > 0.05, "{width} {}", row.rmse);
+    assert!(
+        found.views[0].soft_edges > 20 && width < 0.4 && row.errors.rmse > 0.05,
+        "{width} {}",
+        row.errors.rmse
+    );
     assert_eq!(found.truth.samples, 32);
 }
 
@@ -196,8 +207,15 @@ fn it_stops_when_asked_and_counts_what_does_not_vary() {
         ControlFlow::Continue(())
     });
     let row = &found.expect("measured").rows[0];
-    assert_eq!((row.passes, row.texels, row.memory_bytes, row.taps), (1, 128 * 128, 4 * 128 * 128, 1));
-    assert!(row.triangles > 20_000 && row.draws == 3 && row.pass_names.len() == 3);
-    assert!(row.cost_min_ms <= row.cost_ms && row.cost_ms <= row.cost_max_ms && row.frame_ms > 0.0);
+    assert_eq!(
+        (row.cost.passes, row.cost.texels, row.cost.memory_bytes, row.cost.taps),
+        (1, 128 * 128, 4 * 128 * 128, 1)
+    );
+    assert!(row.cost.triangles > 20_000 && row.cost.draws == 3 && row.cost.pass_names.len() == 3);
+    assert!(
+        row.cost.cost_min_ms <= row.cost.cost_ms
+            && row.cost.cost_ms <= row.cost.cost_max_ms
+            && row.cost.frame_ms > 0.0
+    );
     assert!(last.into_inner() >= 50);
 }

@@ -2,6 +2,7 @@
 
 use super::distance::distance_to_change;
 use glam::{UVec2, Vec3};
+use serde::Serialize;
 
 /// No technique can place an edge better than this, pixels.
 pub const LEAST_REACH_PX: f32 = 2.0;
@@ -20,7 +21,7 @@ pub struct Judged {
 }
 
 /// How wrong an answer is. Shares and errors are fractions of 1; lower is better.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// Mean of max(0, V* - V) over receivers.
     pub false_shadow: f64,
@@ -44,6 +45,27 @@ pub struct Errors {
     pub acne_pixels: usize,
     /// Sure receivers that leak.
     pub leak_pixels: usize,
+}
+
+impl Errors {
+    /// Means over several pictures; counts are sums.
+    pub fn mean(all: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> f64| all.iter().map(of).sum::<f64>() / all.len().max(1) as f64;
+        let sum = |of: fn(&Self) -> usize| all.iter().map(of).sum();
+        Self {
+            false_shadow: mean(|e| e.false_shadow),
+            false_light: mean(|e| e.false_light),
+            rmse: mean(|e| e.rmse),
+            acne: mean(|e| e.acne),
+            leak: mean(|e| e.leak),
+            edge: mean(|e| e.edge),
+            band: mean(|e| e.band),
+            receivers: sum(|e| e.receivers),
+            sure: sum(|e| e.sure),
+            acne_pixels: sum(|e| e.acne_pixels),
+            leak_pixels: sum(|e| e.leak_pixels),
+        }
+    }
 }
 
 impl Judged {
@@ -181,6 +203,17 @@ mod tests {
         );
         // Neither fully lit nor fully dark: neither acne nor leak.
         assert_eq!((grey.acne_pixels, grey.leak_pixels), (0, 0));
+    }
+
+    #[test]
+    fn means_are_of_shares_and_sums_of_counts() {
+        let judged = half();
+        let dark = vec![Vec3::ZERO; 200];
+        let (right, wrong) = (judged.errors(judged.truth(), &[0.0; 200]), judged.errors(&dark, &[0.0; 200]));
+        let mean = Errors::mean(&[right, wrong]);
+        assert!(near(mean.acne, 0.5 * wrong.acne) && near(mean.rmse, 0.5 * wrong.rmse) && wrong.acne > 0.5);
+        assert_eq!((mean.sure, mean.acne_pixels), (300, wrong.acne_pixels));
+        assert_eq!(Errors::mean(&[]), Errors::default());
     }
 
     #[test]
