@@ -37,7 +37,7 @@ fn kept(words: &[String]) -> Vec<String> {
     let mut kept = Vec::new();
     let mut words = words.iter().skip(1); // The command's name.
     while let Some(word) = words.next() {
-        let (name, has_value) = word.split_once('=').map_or((word.as_str(), false), |(name, _)| (name, true));
+        let name = word.split_once('=').map_or(word.as_str(), |(name, _)| name);
         let is_short = |short: &str| !short.is_empty() && word.starts_with(short) && !word.starts_with("--");
         match NOT_OF_RENDER.iter().find(|(long, short, _)| *long == name || is_short(short)) {
             None => kept.push(word.clone()),
@@ -45,7 +45,7 @@ fn kept(words: &[String]) -> Vec<String> {
             Some((long, short, true)) if word == long || word == short => {
                 words.next();
             }
-            Some(_) => debug_assert!(has_value || name.starts_with('-')),
+            Some(_) => {}
         }
     }
     kept

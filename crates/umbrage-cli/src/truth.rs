@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use umbrage_measure::picture_of_v;
 use umbrage_render::picture::write_png;
-use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View};
+use umbrage_render::{GivenVisibility, Gpu, MAX_LIGHTS, Measure, RenderOptions, Renderer, View};
 use umbrage_truth::{Quality, Rays, Surfaces, Visibility};
 
 #[derive(Serialize)]
@@ -50,14 +50,17 @@ pub fn quality(args: &QualityArgs) -> Quality {
 pub fn run(args: &TruthArgs) -> Result<(), Fault> {
     check_output(&args.output)?;
     let stage = setup::stage(&args.scene)?;
-    let count = stage.scene.lights.len();
+    let is_final = args.view == View::Final.id();
+    let count = match stage.scene.lights.len() {
+        all if is_final => all.min(MAX_LIGHTS),
+        all => all,
+    };
     if args.light_index >= count {
         return Err(Fault::WrongUse(format!(
             "--light-index {}: there are {count} lights, counted from 0",
             args.light_index
         )));
     }
-    let is_final = args.view == View::Final.id();
     let progress = Progress::new()?;
     let start = Instant::now();
     // The bar's share of building is a guess; rays take most of the time in all but the largest scenes.
@@ -80,7 +83,7 @@ pub fn run(args: &TruthArgs) -> Result<(), Fault> {
     write_png(&args.output, stage.size.x, stage.size.y, &picture).map_err(Fault::Failed)?;
     drop(progress);
     let shown = &found[if is_final { args.light_index } else { 0 }];
-    let receivers = shown.receivers();
+    let traced = surfaces.rays + found.iter().map(|truth| truth.rays).sum::<u64>();
     let report = Report {
         scene: SceneJson::of(&stage.scene),
         size: stage.size.to_array(),
@@ -90,16 +93,15 @@ pub fn run(args: &TruthArgs) -> Result<(), Fault> {
         seed: args.quality.seed,
         seconds,
         build_s,
-        rays: surfaces.rays + found.iter().map(|v| v.rays).sum::<u64>(),
-        rays_per_second: 0.0,
-        receivers,
+        rays: traced,
+        rays_per_second: traced as f64 / (seconds - build_s).max(1e-9),
+        receivers: shown.receivers(),
         lit: mean_of_receivers(shown),
         memory_bytes: rays.memory_bytes(),
         output: args.output.display().to_string(),
         warnings: stage.scene.warnings,
         notes: stage.notes,
     };
-    let report = Report { rays_per_second: report.rays as f64 / (seconds - build_s).max(1e-9), ..report };
     if !args.quiet {
         report.notes.iter().for_each(|note| tell("note", note));
         report.warnings.iter().for_each(|warning| tell("warning", warning));
@@ -117,9 +119,8 @@ fn stopped(flow: std::ops::ControlFlow<()>) -> Result<(), Fault> {
 
 fn mean_of_receivers(found: &Visibility) -> f64 {
     let receivers = found.receivers().max(1) as f64;
-    // V is 0 on all other surfaces.
-    let surfaces = found.place.iter().zip(&found.v).filter(|(p, _)| **p == umbrage_truth::Place::Receiver);
-    surfaces.map(|(_, v)| f64::from(v.x + v.y + v.z) / 3.0).sum::<f64>() / receivers
+    let seen = found.place.iter().zip(&found.v).filter(|(p, _)| **p == umbrage_truth::Place::Receiver);
+    seen.map(|(_, v)| f64::from(v.x + v.y + v.z) / 3.0).sum::<f64>() / receivers
 }
 
 /// The lit scene, V of every light as found.

@@ -151,7 +151,7 @@
     command($("command"), data.command);
     if (data.warnings && data.warnings.length) {
       $("warnings").hidden = false;
-      $("warnings").append(...data.warnings.map((text) => el("p", {}, el("b", {}, "Warning "), text)));
+      $("warnings").append(...data.warnings.map((text) => el("p", {}, el("b", {}, "Note "), text)));
     }
     $("terms").append(...TERMS.map(([term, text]) => el("div", {}, el("dt", {}, term), el("dd", {}, text))));
     copyButton($("copy-command"), () => $("command"));

@@ -44,7 +44,7 @@ pub struct ViewSummary {
     pub receivers: usize,
     /// Pixels that were left out because rays and rasteriser saw different surfaces.
     pub excluded_pixels: usize,
-    /// Shares of the picture with soft edges that could be measured, how many.
+    /// Soft edges that were measured.
     pub soft_edges: usize,
     /// Both pictures, PNG.
     #[serde(skip)]

@@ -26,14 +26,15 @@ fn truths(scene: &Scene) -> Vec<Visibility> {
 
 #[test]
 fn the_truth_is_the_same_at_every_scale() {
-    for builtin in builtins().iter().filter(|b| b.name != "knots") {
+    for builtin in builtins() {
         let [first, others @ ..] =
             SCALES.map(|scale| truths(&common::builtin(&format!("{}?scale={scale}", builtin.name))));
         for (scale, other) in SCALES[1..].iter().zip(&others) {
             for (kind, (a, b)) in ["spot", "sun", "disc"].iter().zip(first.iter().zip(other)) {
                 let differ =
                     a.v.iter().zip(&b.v).filter(|(a, b)| (*a - *b).abs().max_element() > 0.13).count();
-                // A pixel's ray may pass an edge on the other side: scaling rounds every corner anew.
+                // A ray may pass an edge on its other side, because scaling rounds every corner anew.
+                println!("{} {kind} at {scale}: {differ} of {} pixels differ", builtin.name, a.v.len());
                 assert!(differ <= 4, "{} {kind} at {scale}: {differ} pixels differ", builtin.name);
             }
         }
