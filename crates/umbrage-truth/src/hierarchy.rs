@@ -180,18 +180,26 @@ impl<'a> Rays<'a> {
     /// What the rays of a packet meet first, [`LANES`] at most: surfaces that are mixed by alpha are looked through, and so
     /// are the backs of single-sided ones and the holes of cut-outs.
     pub fn nearest(&self, rays: &[Ray], stack: &mut Stack) -> [Option<Found>; LANES] {
-        let mut found = [None; LANES];
-        if rays.is_empty() {
-            return found;
-        }
-        let (placed, skipped) = self.place(rays);
-        walk::find_nearest(self, &placed[..rays.len().min(LANES)], &mut found, stack);
-        for (found, skipped) in found.iter_mut().zip(skipped) {
-            if let Some(found) = found {
-                found.distance_m += skipped;
+        self.first(rays, true, stack)
+    }
+
+    /// The first thing that takes light from a ray.
+    pub fn blocker(&self, ray: &Ray, stack: &mut Stack) -> Option<Found> {
+        self.first(std::slice::from_ref(ray), false, stack)[0]
+    }
+
+    fn first(&self, rays: &[Ray], sight: bool, stack: &mut Stack) -> [Option<Found>; LANES] {
+        let mut nearest = walk::Nearest { sight, found: [None; LANES] };
+        if !rays.is_empty() {
+            let (placed, skipped) = self.place(rays);
+            walk::find_nearest(self, &placed[..rays.len().min(LANES)], &mut nearest, stack);
+            for (found, skipped) in nearest.found.iter_mut().zip(skipped) {
+                if let Some(found) = found {
+                    found.distance_m += skipped;
+                }
             }
         }
-        found
+        nearest.found
     }
 
     /// The share of light, for each colour, that passes along the rays of a packet, [`LANES`] at most.
@@ -202,14 +210,6 @@ impl<'a> Rays<'a> {
             walk::pass_light(self, &placed[..rays.len().min(LANES)], &mut light, stack);
         }
         light
-    }
-
-    /// The first thing that takes light from a ray.
-    pub fn blocker(&self, ray: &Ray, stack: &mut Stack) -> Option<Found> {
-        let (placed, skipped) = self.place(std::slice::from_ref(ray));
-        let mut nearest = None;
-        walk::find_blocker(self, &placed[..1], &mut nearest, stack);
-        nearest.map(|found: Found| Found { distance_m: found.distance_m + skipped[0], ..found })
     }
 
     /// What a surface lets through where it was hit.

@@ -1,4 +1,4 @@
-//! Walks of packets through the hierarchy: what is nearest, how much light passes, what blocks it. Each exists once, for any
+//! Walks of packets through the hierarchy: what is nearest, how much light passes. Each exists once, for any
 //! way to test boxes and triangles, and is made for the instructions that this machine has.
 
 use crate::hierarchy::{Found, NO_CHILD, Rays, Stack};
@@ -63,11 +63,21 @@ fn walk(
     }
 }
 
+/// What rays meet first.
+#[derive(Debug)]
+pub struct Nearest {
+    /// Do rays of sight look? They pass blended surfaces and the backs of single-sided ones; light passes neither, but
+    /// for what a surface lets through.
+    pub sight: bool,
+    /// One for each ray.
+    pub found: [Option<Found>; LANES],
+}
+
 #[inline(always)]
 fn find_nearest_by(
     rays: &Rays<'_>,
     packet: &mut Packet,
-    found: &mut [Option<Found>; LANES],
+    nearest: &mut Nearest,
     stack: &mut Stack,
     reach_box: impl Box8,
     hit_triangle: impl Triangle8,
@@ -75,17 +85,18 @@ fn find_nearest_by(
     walk(rays, packet, stack, reach_box, |packet, mask, slots| {
         for slot in slots {
             let tag = rays.triangles.tags[slot];
-            if tag.is_blended() {
+            if nearest.sight && tag.is_blended() {
                 continue;
             }
-            let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, !tag.is_double_sided(), mask);
-            for lane in lanes(hits) {
-                let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
+            let front_only = nearest.sight && !tag.is_double_sided();
+            let corners = &rays.triangles.corners[slot].0;
+            for lane in lanes(hit_triangle(packet, corners, front_only, mask)) {
+                let hit = packet.hit_at(corners, lane);
                 if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v) != Vec3::ZERO {
                     continue;
                 }
                 packet.end_at(lane, hit.t);
-                found[lane] = Some(Found { distance_m: hit.t, slot: slot as u32 });
+                nearest.found[lane] = Some(Found { distance_m: hit.t, slot: slot as u32 });
             }
         }
     });
@@ -118,31 +129,6 @@ fn pass_light_by(
                 if light[lane] == Vec3::ZERO {
                     packet.active &= !(1 << lane);
                 }
-            }
-        }
-    });
-}
-
-#[inline(always)]
-fn find_blocker_by(
-    rays: &Rays<'_>,
-    packet: &mut Packet,
-    nearest: &mut Option<Found>,
-    stack: &mut Stack,
-    reach_box: impl Box8,
-    hit_triangle: impl Triangle8,
-) {
-    walk(rays, packet, stack, reach_box, |packet, mask, slots| {
-        for slot in slots {
-            let tag = rays.triangles.tags[slot];
-            let hits = hit_triangle(packet, &rays.triangles.corners[slot].0, false, mask);
-            for lane in lanes(hits) {
-                let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
-                if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v) != Vec3::ZERO {
-                    continue;
-                }
-                packet.end_at(lane, hit.t);
-                *nearest = Some(Found { distance_m: hit.t, slot: slot as u32 });
             }
         }
     });
@@ -187,20 +173,14 @@ macro_rules! for_this_machine {
 }
 
 for_this_machine!(
-    /// What each ray of sight meets first.
+    /// What each ray meets first.
     find_nearest,
     find_nearest_by,
-    [Option<Found>; LANES]
+    Nearest
 );
 for_this_machine!(
     /// Multiplies `light` by what passes along each ray.
     pass_light,
     pass_light_by,
     [Vec3; LANES]
-);
-for_this_machine!(
-    /// The first thing that takes all light.
-    find_blocker,
-    find_blocker_by,
-    Option<Found>
 );
