@@ -151,8 +151,9 @@ pub fn compare(
         warnings: Vec::new(),
     };
     let mut step = 0;
+    let mut alone = scene.clone();
     for (light, number) in scene.lights.iter().zip(&plan.light_numbers) {
-        let alone = Scene { lights: vec![light.clone()], ..scene.clone() };
+        alone.lights = vec![light.clone()];
         for (camera, (name, cameras)) in groups.iter().enumerate() {
             let at = At { id: format!("c{camera}-l{number}"), name, light: *number };
             let steps_done = |label: &str, done: f32| progress(label, (step as f32 + done) / steps);
@@ -230,8 +231,11 @@ fn measure_group(
         last = Some(truth);
     }
     let first = made.rows.len() - plan.techniques.len();
-    for (row, so_far) in made.rows[first..].iter_mut().zip(&running) {
+    for (i, (row, so_far)) in made.rows[first..].iter_mut().zip(&running).enumerate() {
         so_far.put(row);
+        // A technique may be measured several times, with other parameters.
+        let file = |what: &str| format!("img/{}-{i}-{}-{what}.png", at.id, row.technique);
+        [row.r#final, row.visibility, row.heat] = ["final", "visibility", "heat"].map(file);
     }
     Ok(())
 }
@@ -323,7 +327,7 @@ fn png(truth: &ViewTruth, rgba: &[u8]) -> Result<Vec<u8>, MeasureError> {
     encode_png(size.x, size.y, rgba).map_err(|e| MeasureError::Write(format!("cannot pack a picture: {e}")))
 }
 
-/// A row with its pictures and costs; errors over all frames are put in later.
+/// A row with its pictures and costs; errors over all frames, and names, are put in later.
 fn row(
     shot: &Shot<'_>,
     settings: &Settings,
@@ -340,7 +344,6 @@ fn row(
     let size = truth.size();
     let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);
     let technique = settings.technique;
-    let file = |what: &str| format!("img/{}-{}-{what}.png", at.id, technique.id);
     Ok(Row {
         view: at.id.clone(),
         technique: technique.id,
@@ -355,9 +358,9 @@ fn row(
         flicker: None,
         flip: flip(reference, &picture, size.x, size.y),
         cost,
-        r#final: file("final"),
-        visibility: file("visibility"),
-        heat: file("heat"),
+        r#final: String::new(),
+        visibility: String::new(),
+        heat: String::new(),
         command: String::new(),
         pictures: [png(truth, &picture)?, png(truth, &picture_of_v(v))?, png(truth, &heat)?],
         settings: settings.clone(),

@@ -188,6 +188,9 @@ fn a_path_shows_what_flickers() {
     let found = compare(&gpu, &scene, &plan, &|_: &str, _| ControlFlow::Continue(())).expect("measured");
     let flicker: Vec<f64> = found.rows.iter().map(|row| row.flicker.expect("places that stay")).collect();
     println!("flicker without shadow, of a coarse map, of one with acne: {flicker:.5?}");
+    // The two that are one technique have pictures of their own.
+    let files: std::collections::HashSet<&str> = found.rows.iter().map(|row| row.heat.as_str()).collect();
+    assert_eq!(files.len(), 3, "{files:?}");
     assert!(flicker[0] < 1e-6 && flicker[1] < 0.02 && flicker[2] > 2.0 * flicker[1], "{flicker:?}");
 }
 
