@@ -71,10 +71,14 @@ proptest! {
         let (window, stored) = rasterised(clip_from_world * p_world.extend(1.0), depth, size);
         let at = locate(&texture_from_world(clip_from_world, depth, TextureOrigin::TopLeft), p_world);
         let off = at.uv * size.as_vec2() - window;
-        prop_assert!(off.abs().max_element() < 1e-2, "{off} texels apart");
+        // Both chains round world positions, which are far from the origin beside their distance to the light: so many
+        // texels does that move them.
+        let rounded_m = 8.0 * f32::EPSILON * (p_world.abs().max_element() + world_from_light.w_axis.length());
+        let allowed_texel = rounded_m / (p_light.z.abs() * 0.6f32.tan()) * size.as_vec2().max_element();
+        prop_assert!(off.abs().max_element() < allowed_texel, "{off} texels apart, not {allowed_texel}");
         prop_assert!(close(at.depth, stored, 1e-4));
         // Away from a texel's border, where rounding may choose either side, the texel itself is the same.
-        if (window - window.round()).abs().min_element() > 1e-2 {
+        if (window - window.round()).abs().min_element() > allowed_texel {
             prop_assert_eq!(texel_at(at.uv, size), window.floor().as_uvec2());
         }
     }
