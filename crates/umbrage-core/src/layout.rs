@@ -1,8 +1,9 @@
 //! Structures as shaders see them. Every one of them mirrors a WGSL struct; a test asks naga whether it still does.
 
 use crate::fit::ShadowView;
+use crate::technique::{Settings, Storage};
 use bytemuck::{Pod, Zeroable};
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 /// Mirrors `UmbrageView` of `wgsl/view.wgsl`; see there for what each field means.
 #[repr(C)]
@@ -18,19 +19,55 @@ pub struct GpuView {
     pub texel_m: f32,
     /// 1 or 0.
     pub perspective: u32,
+    /// Metres.
+    pub near_m: f32,
+    /// Metres.
+    pub far_m: f32,
+    /// Stored depth.
+    pub step_depth: f32,
+    /// Share of the stored depth.
+    pub step_relative: f32,
+    /// Share of the distance from near to far.
+    pub step_share: f32,
+    /// Texels.
+    pub reach_texel: f32,
+    /// Texels.
+    pub width_texel: f32,
+    /// What the bias makes of it.
+    pub constant: f32,
+    /// World space.
+    pub origin: Vec3,
+    /// Texels.
+    pub normal_texel: f32,
+    pub cone: f32,
+    pub anchor: f32,
+    pub pad: [f32; 2],
 }
 
 impl GpuView {
-    /// The view in layer `layer` of maps of `size_texel`, with `bias_depth` of uniform bias in its lookup matrix (0
-    /// for none).
-    pub fn new(view: &ShadowView, layer: u32, size_texel: u32, bias_depth: f32) -> Self {
-        let bias = crate::lookup::matrix_bias(bias_depth, crate::DEPTH);
+    /// The view in layer `layer` of the maps that `settings` ask for. `storage` is what the maps got: never `auto`.
+    pub fn new(view: &ShadowView, layer: u32, settings: &Settings, storage: Storage) -> Self {
+        let bias = crate::lookup::matrix_bias(crate::plan::lookup_bias_depth(settings), crate::DEPTH);
+        let steps = storage.steps();
         Self {
             texture_from_world: bias * view.texture_from_world(),
             layer,
-            texel_uv: 1.0 / size_texel.max(1) as f32,
+            texel_uv: 1.0 / settings.map_size_texel().max(1) as f32,
             texel_m: view.texel_m,
             perspective: u32::from(view.perspective),
+            near_m: view.near_m,
+            far_m: view.far_m,
+            step_depth: steps.depth,
+            step_relative: steps.relative,
+            step_share: steps.share,
+            reach_texel: settings.reach_texel(),
+            width_texel: settings.value("width").unwrap_or(1.0),
+            constant: settings.value("plane_margin").unwrap_or(0.0),
+            normal_texel: settings.value("normal_offset").unwrap_or(0.0),
+            origin: view.light_from_world.inverse().w_axis.truncate(),
+            cone: settings.value("cone").unwrap_or(0.0),
+            anchor: settings.value("anchor").unwrap_or(0.0),
+            pad: [0.0; 2],
         }
     }
 }
@@ -62,6 +99,20 @@ mod tests {
             ("texel_uv", offset_of!(GpuView, texel_uv)),
             ("texel_m", offset_of!(GpuView, texel_m)),
             ("perspective", offset_of!(GpuView, perspective)),
+            ("near_m", offset_of!(GpuView, near_m)),
+            ("far_m", offset_of!(GpuView, far_m)),
+            ("step_depth", offset_of!(GpuView, step_depth)),
+            ("step_relative", offset_of!(GpuView, step_relative)),
+            ("step_share", offset_of!(GpuView, step_share)),
+            ("reach_texel", offset_of!(GpuView, reach_texel)),
+            ("width_texel", offset_of!(GpuView, width_texel)),
+            ("constant", offset_of!(GpuView, constant)),
+            ("origin", offset_of!(GpuView, origin)),
+            ("normal_texel", offset_of!(GpuView, normal_texel)),
+            ("cone", offset_of!(GpuView, cone)),
+            ("anchor", offset_of!(GpuView, anchor)),
+            ("pad_0", offset_of!(GpuView, pad)),
+            ("pad_1", offset_of!(GpuView, pad) + 4),
         ];
         assert_eq!(shader, mirror);
         assert_eq!(span as usize, size_of::<GpuView>());

@@ -107,8 +107,8 @@ pub fn lookup_bias_depth(settings: &Settings) -> f32 {
 
 fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
     match bias {
-        Bias::None | Bias::Matrix => PolygonOffset::default(),
-        Bias::Constant | Bias::Slope => PolygonOffset {
+        Bias::None | Bias::Matrix | Bias::ReceiverPlane => PolygonOffset::default(),
+        Bias::Constant | Bias::Slope | Bias::Normal | Bias::Auto => PolygonOffset {
             constant: (DEPTH.away() * settings.value("constant").unwrap_or(0.0)) as i32,
             slope: DEPTH.away() * settings.value("slope_factor").unwrap_or(0.0),
         },

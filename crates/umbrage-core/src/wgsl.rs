@@ -10,11 +10,23 @@ pub struct Module {
     pub name: &'static str,
     /// What it offers, in one sentence.
     pub summary: &'static str,
-    /// Modules whose text must come before it.
+    /// Modules, or [slots](SLOTS), whose text must come before it.
     pub needs: &'static [&'static str],
     /// Its text.
     pub source: &'static str,
 }
+
+impl Module {
+    /// The slot that it fills: what stands before the slash of its name, where that is a slot.
+    pub fn slot(&self) -> Option<&'static str> {
+        let (slot, _) = self.name.split_once('/')?;
+        SLOTS.iter().find(|(name, _)| *name == slot).map(|(name, _)| *name)
+    }
+}
+
+/// What can be done in several ways, one of them in each shader: all modules of a slot define the same functions. With each
+/// slot, the module that fills it when none is named.
+pub const SLOTS: &[(&str, &str)] = &[("map", "map/depth"), ("compare", "compare/auto"), ("kernel", "kernel/bell")];
 
 macro_rules! module {
     ($name:literal, $summary:literal, [$($need:literal),*]) => {
@@ -32,13 +44,29 @@ pub const MODULES: &[Module] = &[
     module!("view", "what a shader knows of a light's view: lookup matrix, layer, texel size", []),
     module!("light", "distance falloff and cone of KHR_lights_punctual, without shadow", []),
     module!("cookie", "a slide in front of a light", []),
+    module!("face", "which of a point light's six tiles looks along a direction", []),
+    module!("share", "from the linear share of a distance to stored depth and back", ["view"]),
     module!(
         "locate",
-        "from world space to a place and depth in the map; says when outside or behind",
-        ["view"]
+        "from a surface in world space to place, depth and slope in the map; says when outside or behind",
+        ["view", "share"]
     ),
-    module!("filter/nearest", "one comparison with the texel that holds the receiver", ["locate"]),
-    module!("filter/linear", "2x2 comparisons blended by the hardware", ["locate"]),
+    module!("bias/normal", "a receiver moved along its normal before it is looked up", ["view"]),
+    module!("map/depth", "four texels of a depth texture", ["view"]),
+    module!("map/distance", "four texels of a float texture that holds distance", ["share"]),
+    module!("map/packed1", "four texels of distance in 8 bits of one channel", ["share"]),
+    module!("map/packed2", "four texels of distance in 16 bits of two channels", ["share"]),
+    module!("map/packed3", "four texels of distance in 24 bits of three channels", ["share"]),
+    module!("taps", "what comparing four texels with a receiver gives", []),
+    module!("compare/plain", "texels compared with the receiver's own depth", ["locate", "taps"]),
+    module!("compare/plane", "texels compared with the receiver's plane at each", ["locate", "taps"]),
+    module!("compare/auto", "texels compared so that no lit surface shadows itself", ["locate", "taps"]),
+    module!("kernel/box", "a box that slides over the texels without steps", ["view"]),
+    module!("kernel/bell", "a quadratic B-spline, near a Gaussian", ["view"]),
+    module!("filter/nearest", "one comparison with the texel that holds the receiver", ["map", "compare"]),
+    module!("filter/linear", "2x2 comparisons, blended", ["map", "compare"]),
+    module!("filter/linear_hardware", "2x2 comparisons with one depth, blended by the hardware", ["locate"]),
+    module!("filter/kernel", "comparisons with all texels that a kernel reaches, blended", ["map", "compare", "kernel"]),
 ];
 
 /// A name that is no module.
@@ -51,14 +79,29 @@ pub struct UnknownModule {
     pub known: String,
 }
 
-/// The text of the named modules and all that they need, each once, in an order that compiles.
+/// The text of the named modules and all that they need, each once, in an order that compiles. A slot that is needed is
+/// filled by the module of it that is named, or by its default.
 ///
 /// # Errors
 /// [`UnknownModule`] lists the names that exist.
 pub fn assemble(names: &[&str]) -> Result<String, UnknownModule> {
+    assemble_with(names, &[])
+}
+
+/// The same, with slots filled by text of one's own: pairs of a slot and the text that defines its functions.
+///
+/// # Errors
+/// [`UnknownModule`] lists the names that exist.
+pub fn assemble_with(names: &[&str], own: &[(&str, &str)]) -> Result<String, UnknownModule> {
     let mut wanted = vec![false; MODULES.len()];
     let mut open: Vec<&str> = names.to_vec();
+    let filler = |name: &str| {
+        let (_, default) = SLOTS.iter().find(|(slot, _)| *slot == name)?;
+        let named = names.iter().find(|named| named.strip_prefix(name).is_some_and(|rest| rest.starts_with('/')));
+        Some(named.copied().unwrap_or(default))
+    };
     while let Some(name) = open.pop() {
+        let name = filler(name).unwrap_or(name);
         let index = MODULES.iter().position(|m| m.name == name).ok_or_else(|| UnknownModule {
             asked: name.to_owned(),
             known: MODULES.iter().map(|m| m.name).collect::<Vec<_>>().join(", "),
@@ -67,7 +110,11 @@ pub fn assemble(names: &[&str]) -> Result<String, UnknownModule> {
             open.extend(MODULES[index].needs);
         }
     }
-    let chosen = MODULES.iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(module, _)| module.source);
+    let text = |module: &Module| {
+        let own = own.iter().find(|(slot, _)| module.slot() == Some(slot));
+        own.map_or(module.source.to_owned(), |(_, text)| (*text).to_owned())
+    };
+    let chosen = MODULES.iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(module, _)| text(module));
     Ok(chosen.collect::<Vec<_>>().join("\n"))
 }
 

@@ -11,4 +11,29 @@ struct UmbrageView {
     texel_m: f32,
     // 1: texels grow with distance, 0: they do not.
     perspective: u32,
+    // Where the map begins and ends along the light's axis, metres.
+    near_m: f32,
+    far_m: f32,
+    // How far the stored depth may be off: a step of the format, a share of the depth itself, and a step of the linear
+    // share of the distance where that is what is stored.
+    step_depth: f32,
+    step_relative: f32,
+    step_share: f32,
+    // Widest reach of the filter along an axis, texels.
+    reach_texel: f32,
+    // What the filter's parameters say, texels.
+    width_texel: f32,
+    // What the bias's parameters say.
+    constant: f32,
+    // Where the light is; of no use for parallel light.
+    origin: vec3f,
+    normal_texel: f32,
+    cone: f32,
+    anchor: f32,
+    pad_0: f32,
+    pad_1: f32,
 }
+
+// Which way stored depth grows: 1 away from the light, -1 towards it (reversed). `umbrage_core::DEPTH` says the same, and
+// a test compares them; in a renderer of your own, this is the line to change.
+const UMBRAGE_AWAY = -1.0;

@@ -212,6 +212,17 @@ fn measure_group(
             progress_to(progress, &label, (done + 1 + i) as f32)?;
             let v = scene.visibility(settings, &mut made.warnings)?;
             let (errors, shape) = truth.judge(&v.v, &v.reach_px(&truth, settings));
+            if std::env::var("BAD").is_ok() { // DEBUG
+                let reach = v.reach_px(&truth, settings);
+                for (i, r) in reach.iter().enumerate() {
+                    if !truth.judged.is_sure(i, *r) { continue; }
+                    let t = truth.judged.truth()[i].x;
+                    if (t >= 1.0 && v.v[i].x < 0.95) || (t <= 0.0 && v.v[i].x > 0.05) {
+                        let s = truth.surfaces.seen[i].as_ref();
+                        println!("  x {} y {} V* {t} V {:.3} reach {r:.1} p {:?} n {:?} slot {:?}", i as u32 % truth.size().x, i as u32 / truth.size().x, v.v[i].x, s.map(|s| s.p_world), s.map(|s| s.normal_world), s.map(|s| s.slot));
+                    }
+                }
+            }
             let so_far = &mut running[i];
             so_far.errors.push(errors);
             so_far.gaps_m.extend(shape.gap_m);
@@ -264,16 +275,15 @@ struct Shot<'a> {
     options: &'a RenderOptions,
 }
 
-/// A technique's answer, and the view that it was looked up in.
+/// A technique's answer, and the views that it was looked up in.
 struct Answer {
     v: Vec<Vec3>,
-    view: Option<umbrage_render::umbrage::core::fit::ShadowView>,
+    views: Vec<umbrage_render::umbrage::core::fit::ShadowView>,
 }
 
 impl Answer {
     fn reach_px(&self, truth: &ViewTruth, settings: &Settings) -> Vec<f32> {
-        let filter_texel = settings.combination.map_or(0.0, |c| c.filter.reach_texel());
-        reach_px(&truth.surfaces, self.view.as_ref(), settings.map_size_texel(), filter_texel)
+        reach_px(&truth.surfaces, &self.views, settings.map_size_texel(), settings.reach_texel())
     }
 }
 
@@ -299,7 +309,7 @@ impl<'a> Shot<'a> {
             }
         }
         let v = renderer.visibility()?.into_iter().map(Vec3::splat).collect();
-        Ok(Answer { v, view: renderer.views().first().copied() })
+        Ok(Answer { v, views: renderer.views().to_vec() })
     }
 
     /// The final picture with the truth's V.

@@ -7,26 +7,37 @@ use umbrage_truth::{LEAST_REACH_PX, Seen, Surfaces};
 
 /// Reach of every pixel, pixels: two, or as many as the filter's radius and one texel more are long on the screen, where
 /// the texel's shadow on the surface is seen at its longest. `filter_texel` is the filter's radius. Infinite where the
-/// surface is edge-on to the light. Without a map there is nothing that a texel hides.
+/// surface is edge-on to the light. Without a map there is nothing that a texel hides. Of several views, that one counts in
+/// whose middle a surface lies: the tile of a point light.
 pub fn reach_px(
     surfaces: &Surfaces,
-    view: Option<&ShadowView>,
+    views: &[ShadowView],
     size_texel: u32,
     filter_texel: f32,
 ) -> Vec<f32> {
-    let Some(view) = view else { return vec![LEAST_REACH_PX; surfaces.len()] };
+    if views.is_empty() {
+        return vec![LEAST_REACH_PX; surfaces.len()];
+    }
     let aspect = surfaces.size.x as f32 / surfaces.size.y as f32;
     let camera = &surfaces.camera;
     let clip_from_world = camera.clip_from_view(aspect, DEPTH) * camera.view_from_world();
     let picture = Lookup { clip_from_world: clip_from_world.as_dmat4(), size: surfaces.size.as_dvec2() };
-    let map = Lookup {
+    let map = |view: &ShadowView| Lookup {
         clip_from_world: view.clip_from_world().as_dmat4(),
         size: DVec2::splat(f64::from(size_texel)),
+    };
+    let maps: Vec<Lookup> = views.iter().map(map).collect();
+    let off_middle = |map: &&Lookup, p_world: DVec3| {
+        let clip = map.clip_from_world * p_world.extend(1.0);
+        if clip.w > 0.0 { (clip.x / clip.w).abs().max((clip.y / clip.w).abs()) } else { f64::INFINITY }
+    };
+    let map_of = |p_world: DVec3| {
+        maps.iter().min_by(|a, b| off_middle(a, p_world).total_cmp(&off_middle(b, p_world))).unwrap_or(&maps[0])
     };
     let texels = f64::from(filter_texel) + 1.0;
     let reach = |seen: &Option<Seen>| {
         seen.as_ref().map_or(LEAST_REACH_PX, |seen| {
-            let px_per_texel = px_per_texel(&picture, &map, seen.p_world, seen.normal_world.as_dvec3());
+            let px_per_texel = px_per_texel(&picture, map_of(seen.p_world), seen.p_world, seen.normal_world.as_dvec3());
             ((texels * px_per_texel) as f32).max(LEAST_REACH_PX)
         })
     };
@@ -84,8 +95,8 @@ mod tests {
         let toward = Vec3::new(elevation_rad.cos(), elevation_rad.sin(), 0.0);
         let sun = Light { kind: LightKind::Directional, ..Light::default() }.aimed(toward * 30.0, Vec3::ZERO);
         let bounds = [Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) }];
-        let view = fit(&sun, &bounds, &FitOptions { size_texel: 4, least_near: 1e-4 }).expect("a view");
-        (reach_px(&surfaces, Some(&view), 4, filter_texel)[0], view.texel_m)
+        let view = fit(&sun, &bounds, &FitOptions { size_texel: 4, least_near: 1e-4, border_texel: 0.0 }).expect("a view");
+        (reach_px(&surfaces, &[view], 4, filter_texel)[0], view.texel_m)
     }
 
     #[test]

@@ -71,8 +71,9 @@ fn shapes(scene: &Scene) -> Vec<Shape> {
 }
 
 impl Items {
-    /// Sorts a scene's instances by pipeline, material and mesh.
-    pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry]) -> Self {
+    /// Sorts a scene's instances by pipeline, material and mesh. Vertices may be moved by `reach_m`; what is moved is neither
+    /// flat nor closed for certain.
+    pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry], reach_m: f32) -> Self {
         let shapes = shapes(scene);
         let mut items: Vec<Item> = (0..scene.instances.len())
             .map(|instance| {
@@ -83,8 +84,10 @@ impl Items {
                     mirrored: placed.world_from_object.determinant() < 0.0,
                     ..materials[mesh.material].variant
                 };
-                let bounds_world = mesh.bounds.transformed(&placed.world_from_object);
-                let Shape { closed, plane_object } = shapes[placed.mesh];
+                let mut bounds_world = mesh.bounds.transformed(&placed.world_from_object);
+                bounds_world = Aabb { min: bounds_world.min - reach_m, max: bounds_world.max + reach_m };
+                let shape = if reach_m > 0.0 { Shape::default() } else { shapes[placed.mesh] };
+                let Shape { closed, plane_object } = shape;
                 // Planes go by the inverse transpose.
                 let plane_world =
                     plane_object.map(|plane| placed.world_from_object.inverse().transpose() * plane);

@@ -4,7 +4,8 @@ use crate::draw_list::{Batch, Work};
 use crate::options::View;
 use crate::pipelines::MeshTarget;
 use crate::readback;
-use crate::renderer::{Renderer, Shadows, VIEW_STRIDE};
+use crate::renderer::{Renderer, Shadows};
+use umbrage::caster::GpuCasterView;
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
 use std::time::Instant;
@@ -164,7 +165,7 @@ impl Renderer<'_> {
             stamps,
             |recorded| {
                 queries.count(recorded, pass, |recorded| {
-                    recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * VIEW_STRIDE]);
+                    recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
                     recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
                     recorded.set_vertex_buffer(1, self.instances.slice(..));
                     for batch in &shadows.casters[layer] {

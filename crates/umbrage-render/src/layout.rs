@@ -39,7 +39,7 @@ pub struct GpuFrame {
     pub light_count: u32,
     pub shown_light: u32,
     pub exposure: f32,
-    pub pad: u32,
+    pub time_s: f32,
 }
 
 /// Mirrors `Light` of `wgsl/frame.wgsl`.
@@ -59,7 +59,8 @@ pub struct GpuLight {
     pub slide: i32,
     pub near_m: f32,
     pub far_m: f32,
-    pub pad: [u32; 2],
+    pub places: u32,
+    pub pad: u32,
 }
 
 /// Mirrors `Material` of `wgsl/mesh.wgsl`.
@@ -130,7 +131,7 @@ mod tests {
                     light_count,
                     shown_light,
                     exposure,
-                    pad
+                    time_s
                 ),
             ),
             (
@@ -150,6 +151,7 @@ mod tests {
                     slide,
                     near_m,
                     far_m,
+                    places,
                     pad
                 ),
             ),
@@ -169,14 +171,24 @@ mod tests {
                     uv_rows
                 ),
             ),
-            ("UmbrageView", offsets!(GpuView, texture_from_world, layer, texel_uv, texel_m, perspective)),
+            ("UmbrageView", {
+                // Core's own test compares its members.
+                let module = naga::front::wgsl::parse_str(&umbrage::core::wgsl::assemble(&["view"]).expect("known")).expect("valid");
+                let members = module.types.iter().find_map(|(_, ty)| match &ty.inner {
+                    naga::TypeInner::Struct { members, .. } => Some(members.clone()),
+                    _ => None,
+                });
+                let members = members.expect("a struct");
+                let names: Vec<_> = members.iter().map(|m| (&*m.name.clone().expect("named").leak(), m.offset as usize)).collect();
+                (names, size_of::<GpuView>())
+            }),
         ]);
         let mut seen = std::collections::BTreeSet::new();
         for (name, text) in shaders::all() {
             let module = naga::front::wgsl::parse_str(&text)
                 .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&text)));
             for (_, global) in module.global_variables.iter() {
-                if global.space != naga::AddressSpace::Uniform {
+                if !matches!(global.space, naga::AddressSpace::Uniform | naga::AddressSpace::Storage { .. }) {
                     continue;
                 }
                 let mut ty = &module.types[global.ty];

@@ -3,12 +3,11 @@
 use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
-use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit};
+use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit_all};
 use umbrage::core::layout::GpuView;
 use umbrage::core::lookup::{TextureOrigin, texture_from_world};
-use umbrage::core::plan::lookup_bias_depth;
 use umbrage::core::projection::perspective;
-use umbrage::core::technique::Settings;
+use umbrage::core::technique::{Settings, Storage};
 use umbrage::core::{Aabb, DEPTH, Light, LightKind};
 use umbrage_scene::Scene;
 
@@ -21,10 +20,10 @@ pub struct Lights {
     pub gpu_views: Vec<GpuView>,
     /// The view of each map, in the order of the layers.
     pub views: Vec<ShadowView>,
-    /// The light of each map.
+    /// The light of each map: with several places, the light at that place.
     pub light_of_view: Vec<Light>,
-    /// Index into `views` of each light.
-    pub view_of_light: Vec<Option<usize>>,
+    /// The views of each light; empty without a map.
+    pub views_of_light: Vec<std::ops::Range<usize>>,
     /// Images of the slides, in the order of their layers.
     pub slides: Vec<usize>,
     /// What did not go as the user may expect.
@@ -48,6 +47,7 @@ fn gpu_light(
     light: &Light,
     exposure: f32,
     view: Option<(usize, &ShadowView)>,
+    places: usize,
     slide: Option<usize>,
 ) -> GpuLight {
     let (kind, inner_rad, outer_rad) = match light.kind {
@@ -70,6 +70,7 @@ fn gpu_light(
         slide: slide.map_or(-1, |s| s as i32),
         near_m: view.map_or(0.0, |v| v.1.near_m),
         far_m: view.map_or(0.0, |v| v.1.far_m),
+        places: places as u32,
         ..GpuLight::zeroed()
     }
 }
@@ -82,6 +83,7 @@ impl Lights {
     pub fn new(
         scene: &Scene,
         settings: &Settings,
+        storage: Storage,
         exposure: f32,
         bounds_world: &[Aabb],
     ) -> Result<Self, umbrage::core::LightError> {
@@ -90,7 +92,7 @@ impl Lights {
             gpu_views: Vec::new(),
             views: Vec::new(),
             light_of_view: Vec::new(),
-            view_of_light: Vec::new(),
+            views_of_light: Vec::new(),
             slides: Vec::new(),
             warnings: Vec::new(),
         };
@@ -102,37 +104,46 @@ impl Lights {
         for (index, placed) in scene.lights.iter().take(MAX_LIGHTS).enumerate() {
             let light = &placed.light;
             light.check()?;
-            let view = settings.combination.and_then(|combination| {
-                let options = FitOptions { size_texel, least_near: combination.storage.least_near() };
-                match fit(light, bounds_world, &options) {
-                    Ok(view) => Some((made.views.len(), view)),
-                    // It lights nothing, so nothing is missing.
-                    Err(FitError::NothingInReach) => None,
-                    Err(error) => {
-                        made.warnings.push(format!("light {index}: {error}"));
-                        None
+            let first = made.views.len();
+            let mut places = 0;
+            if settings.combination.is_some() {
+                let options = FitOptions {
+                    size_texel,
+                    least_near: storage.least_near(),
+                    border_texel: settings.reach_texel(),
+                };
+                for place in light_places(light, settings) {
+                    match fit_all(&place, bounds_world, &options) {
+                        Ok(views) => {
+                            made.light_of_view.extend(views.iter().map(|_| place));
+                            made.views.extend(views);
+                            places += 1;
+                        }
+                        // It lights nothing, so nothing is missing.
+                        Err(FitError::NothingInReach) => {}
+                        Err(error) => made.warnings.push(format!("light {index}: {error}")),
                     }
                 }
-            });
+            }
+            let views = first..made.views.len();
             let slide = placed.cookie.map(|image| {
                 made.slides.push(image);
                 made.slides.len() - 1
             });
-            made.lights.push(gpu_light(light, exposure, view.as_ref().map(|(i, v)| (*i, v)), slide));
-            made.view_of_light.push(view.map(|(i, _)| i));
-            if let Some((layer, view)) = view {
-                made.gpu_views.push(GpuView::new(
-                    &view,
-                    layer as u32,
-                    size_texel,
-                    lookup_bias_depth(settings),
-                ));
-                made.views.push(view);
-                made.light_of_view.push(*light);
-            }
+            let view = made.views.get(first).map(|view| (first, view));
+            made.lights.push(gpu_light(light, exposure, view, places, slide));
+            made.gpu_views.extend(
+                views.clone().map(|i| GpuView::new(&made.views[i], i as u32, settings, storage)),
+            );
+            made.views_of_light.push(views);
         }
         Ok(made)
     }
+}
+
+/// The places of a light that it is seen from.
+fn light_places(light: &Light, _settings: &Settings) -> Vec<Light> {
+    vec![*light]
 }
 
 /// Where the eye is: a place and 1, or the direction towards it and 0.

@@ -19,12 +19,21 @@ pub enum View {
     Distance,
     /// The map projected on the scene.
     Projected,
+    /// The channels of a map that is a colour target.
+    Channels,
 }
 
 impl View {
     /// All views.
-    pub const ALL: [Self; 6] =
-        [Self::Final, Self::Visibility, Self::Light, Self::Depth, Self::Distance, Self::Projected];
+    pub const ALL: [Self; 7] = [
+        Self::Final,
+        Self::Visibility,
+        Self::Light,
+        Self::Depth,
+        Self::Distance,
+        Self::Projected,
+        Self::Channels,
+    ];
 
     /// Name on the command line.
     pub fn id(self) -> &'static str {
@@ -35,6 +44,7 @@ impl View {
             Self::Depth => "depth",
             Self::Distance => "distance",
             Self::Projected => "projected",
+            Self::Channels => "channels",
         }
     }
 
@@ -47,17 +57,18 @@ impl View {
             Self::Depth => "the light's map: near black, far white",
             Self::Distance => "each surface's distance from the light: near black, far white",
             Self::Projected => "the light's map projected on the scene",
+            Self::Channels => "the channels of a map that is a colour target (storage r32f or packed)",
         }
     }
 
     /// Does it show what the map holds?
     pub fn shows_map(self) -> bool {
-        matches!(self, Self::Depth | Self::Projected)
+        matches!(self, Self::Depth | Self::Projected | Self::Channels)
     }
 
     /// Does it need the map itself, and so a light that has one?
     pub fn needs_map(self) -> bool {
-        matches!(self, Self::Light | Self::Depth | Self::Distance | Self::Projected)
+        !matches!(self, Self::Final | Self::Visibility)
     }
 }
 
@@ -87,6 +98,16 @@ pub struct RenderOptions {
     /// Draw every caster into the maps, also those that can be shown to shadow nothing. Costs time and changes no
     /// picture but those of the maps themselves, which always have them all. Default false.
     pub all_casters: bool,
+    /// A WGSL function that moves vertices, in maps and pictures alike: `fn umbrage_deform(p_world: vec3f, p_object: vec3f,
+    /// time_s: f32) -> vec3f`. Default none.
+    pub deform: Option<Arc<str>>,
+    /// How far it may move them, metres: boxes grow by it. Default 0.
+    pub deform_reach_m: f32,
+    /// What it is told of time, seconds. Default 0.
+    pub time_s: f32,
+    /// Weights of the filter `kernel` as a WGSL function: `fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) ->
+    /// vec4f`, of four texels whose centres lie so far from the receiver. Default none: a bell.
+    pub kernel: Option<Arc<str>>,
     /// V that was found elsewhere (by rays, say), in place of any technique's. Default none.
     pub given: Option<Arc<GivenVisibility>>,
 }
@@ -115,6 +136,10 @@ impl RenderOptions {
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
             all_casters: false,
+            deform: None,
+            deform_reach_m: 0.0,
+            time_s: 0.0,
+            kernel: None,
             given: None,
         }
     }

@@ -25,7 +25,7 @@ pub fn format_of(view: View) -> wgpu::TextureFormat {
     match view {
         View::Final | View::Light => COLOR,
         View::Visibility => VISIBILITY,
-        View::Depth | View::Distance | View::Projected => GREY,
+        View::Depth | View::Distance | View::Projected | View::Channels => GREY,
     }
 }
 
@@ -38,6 +38,8 @@ pub struct Layouts {
     pub material: wgpu::BindGroupLayout,
     /// Group 1 of screen pipelines: G-buffer and depth.
     pub gbuffer: wgpu::BindGroupLayout,
+    /// Are maps colour targets?
+    pub color_maps: bool,
 }
 
 fn uniform(bytes: usize) -> wgpu::BindingType {
@@ -56,8 +58,8 @@ fn texture(
 }
 
 impl Layouts {
-    /// Makes the layouts.
-    pub fn new(device: &wgpu::Device) -> Self {
+    /// Makes the layouts, for maps that are colour targets or depth textures.
+    pub fn new(device: &wgpu::Device, color_maps: bool) -> Self {
         let group = |label, visibility, types: &[wgpu::BindingType]| {
             let entries: Vec<_> = (0u32..)
                 .zip(types)
@@ -70,18 +72,27 @@ impl Layouts {
         };
         use wgpu::{SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension};
         Self {
+            color_maps,
             frame: group(
                 "frame",
                 ShaderStages::VERTEX_FRAGMENT,
                 &[
                     uniform(size_of::<GpuFrame>()),
                     uniform(size_of::<GpuLight>() * MAX_LIGHTS),
-                    uniform(size_of::<GpuView>() * MAX_LIGHTS),
-                    texture(TextureSampleType::Depth, TextureViewDimension::D2Array),
+                    wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Storage { read_only: true },
+                        has_dynamic_offset: false,
+                        min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
+                    },
+                    texture(
+                        if color_maps { TextureSampleType::Float { filterable: false } } else { TextureSampleType::Depth },
+                        TextureViewDimension::D2Array,
+                    ),
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),
                     texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
                     texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
+                    wgpu::BindingType::Sampler(SamplerBindingType::NonFiltering),
                 ],
             ),
             material: crate::materials::layout(device),
@@ -247,6 +258,7 @@ pub fn screen_pipeline(
         View::Depth => "fs_depth",
         View::Distance => "fs_distance",
         View::Projected => "fs_projected",
+        View::Channels => "fs_channels",
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -264,7 +276,7 @@ pub fn screen_pipeline(
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(false),
             depth_compare: Some(match view {
-                View::Depth => wgpu::CompareFunction::Always,
+                View::Depth | View::Channels => wgpu::CompareFunction::Always,
                 _ => wgpu::CompareFunction::NotEqual,
             }),
             stencil: Default::default(),

@@ -17,14 +17,12 @@ use glam::{Mat4, Vec3};
 use umbrage::core::fit::ShadowView;
 use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Draws, Pass, plan};
-use umbrage::core::technique::{Combination, Filter, Storage};
+use umbrage::core::technique::Storage;
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
+use umbrage::caster::{GpuCasterView, NO_DEFORM};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
 use umbrage_scene::{Image, Instance, Reflectance, Scene};
 use wgpu::util::DeviceExt;
-
-/// Bytes between the matrices of two views in the casters' uniform buffer.
-pub(crate) const VIEW_STRIDE: u32 = 256;
 
 /// The maps and what draws them.
 #[derive(Debug)]
@@ -80,7 +78,9 @@ impl<'a> Renderer<'a> {
 
         check_given(scene, &options)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
-        let layouts = Layouts::new(&gpu.device);
+        let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
+        let format = choose_format(storage, |format| gpu.usages_of(format))?;
+        let layouts = Layouts::new(&gpu.device, options.settings.combination.is_some() && format.storage.is_color());
         let geometry = Geometry::new(&gpu.device, scene);
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
@@ -92,8 +92,9 @@ impl<'a> Renderer<'a> {
             &layouts.material,
             &caster_layout,
         );
-        let items = Items::new(scene, &geometry, &materials);
-        let lights = Lights::new(scene, &options.settings, exposure, &items.bounds_world())?;
+        let items = Items::new(scene, &geometry, &materials, options.deform_reach_m);
+        let lights =
+            Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world())?;
         let shown = shown_view(scene, &lights, &options)?;
 
         let eye = Eye::new(camera, &options, shown.as_ref().map(|(light, view)| (*light, view)));
@@ -108,7 +109,7 @@ impl<'a> Renderer<'a> {
             .zip(&lights.views)
             .map(|of| items.casters(scene, of, all_casters, &mut instances))
             .collect();
-        let shadows = make_shadows(gpu, &options, &lights, casters, &caster_layout)?;
+        let shadows = make_shadows(gpu, &options, format, &lights, casters, &caster_layout)?;
 
         let needs = shader_needs(scene, &options, &lights);
         let mut mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
@@ -202,7 +203,11 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
         blinn: used().any(is_blinn),
         placed: scene.lights.iter().any(|l| l.light.kind != LightKind::Directional),
         slide: !lights.slides.is_empty(),
-        views: lights.view_of_light.clone(),
+        lights: lights.lights.len(),
+        point: scene.lights.iter().any(|l| l.light.kind == LightKind::Point),
+        places: lights.lights.iter().any(|l| l.places > 1),
+        deform: options.deform.clone(),
+        kernel: options.kernel.clone(),
     }
 }
 
@@ -239,7 +244,7 @@ impl Eye {
             light_count: light_count as u32,
             shown_light: options.shown_light as u32,
             exposure,
-            pad: 0,
+            time_s: options.time_s,
         }
     }
 }
@@ -309,7 +314,7 @@ fn shown_view(
             "the view `{id}` shows light {index}, but there are {count} lights"
         )));
     }
-    match lights.view_of_light[index] {
+    match lights.views_of_light[index].clone().next() {
         Some(view) => Ok(Some((scene.lights[index].light, lights.views[view]))),
         None if options.view.needs_map() => Err(RenderError::View(format!(
             "the view `{id}` needs a shadow map, and light {index} has none with technique `{}`",
@@ -322,6 +327,7 @@ fn shown_view(
 fn make_shadows(
     gpu: &Gpu,
     options: &RenderOptions,
+    format: ChosenFormat,
     lights: &Lights,
     casters: Vec<Vec<Batch>>,
     caster_layout: &wgpu::BindGroupLayout,
@@ -329,17 +335,18 @@ fn make_shadows(
     let Some(pass) = plan(&options.settings).into_iter().find(|pass| pass.draws == Draws::Casters) else {
         return Ok(None);
     };
-    let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
-    let format = choose_format(storage, |format| gpu.usages_of(format))?;
     if lights.views.is_empty() {
         return Ok(None);
     }
     let maps =
         ShadowMaps::new(&gpu.device, &format, options.settings.map_size_texel(), lights.views.len() as u32)?;
-    let pipelines = CasterPipelines::new(&gpu.device, format.format, &pass, caster_layout);
-    let mut matrices = vec![0u8; lights.views.len() * VIEW_STRIDE as usize];
-    for (view, slot) in lights.views.iter().zip(matrices.chunks_mut(VIEW_STRIDE as usize)) {
-        slot[..64].copy_from_slice(bytemuck::bytes_of(&view.clip_from_world()));
+    let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
+    let pipelines = CasterPipelines::new(&gpu.device, &format, &pass, caster_layout, deform);
+    let stride = GpuCasterView::STRIDE as usize;
+    let mut matrices = vec![0u8; lights.views.len() * stride];
+    for (view, slot) in lights.views.iter().zip(matrices.chunks_mut(stride)) {
+        let view = GpuCasterView::new(view, &pass, options.time_s);
+        slot[..size_of_val(&view)].copy_from_slice(bytemuck::bytes_of(&view));
     }
     let matrices = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("caster views"),
@@ -354,7 +361,7 @@ fn make_shadows(
             resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: &matrices,
                 offset: 0,
-                size: std::num::NonZeroU64::new(64),
+                size: std::num::NonZeroU64::new(size_of::<GpuCasterView>() as u64),
             }),
         }],
     });
@@ -379,13 +386,18 @@ fn frame_group(
     };
     let mut gpu_lights = [GpuLight::zeroed(); MAX_LIGHTS];
     gpu_lights[..lights.lights.len()].copy_from_slice(&lights.lights);
-    let mut gpu_views = [GpuView::zeroed(); MAX_LIGHTS];
-    gpu_views[..lights.gpu_views.len()].copy_from_slice(&lights.gpu_views);
     let frame = uniform("frame", bytemuck::bytes_of(frame));
     let gpu_lights = uniform("lights", bytemuck::cast_slice(&gpu_lights));
-    let gpu_views = uniform("views", bytemuck::cast_slice(&gpu_views));
-    let filter = options.settings.combination.map_or(Filter::Nearest, |c: Combination| c.filter);
-    let compare = umbrage::maps::comparison_sampler(&gpu.device, filter);
+    // A binding cannot be empty.
+    let none = [GpuView::zeroed()];
+    let views = if lights.gpu_views.is_empty() { &none[..] } else { &lights.gpu_views };
+    let gpu_views = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("views"),
+        contents: bytemuck::cast_slice(views),
+        usage: wgpu::BufferUsages::STORAGE,
+    });
+    let compare = umbrage::maps::comparison_sampler(&gpu.device);
+    let point = umbrage::maps::point_sampler(&gpu.device);
     let slides = crate::textures::slides(&gpu.device, &gpu.queue, slide_images);
     let slide_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("slide"),
@@ -393,6 +405,7 @@ fn frame_group(
         min_filter: wgpu::FilterMode::Linear,
         ..Default::default()
     });
+    let is_color = layouts.color_maps;
     // A binding cannot be empty: without maps one texel stands in, and no light refers to it.
     let stand_in = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("no maps"),
@@ -400,7 +413,7 @@ fn frame_group(
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Depth32Float,
+        format: if is_color { wgpu::TextureFormat::R32Float } else { wgpu::TextureFormat::Depth32Float },
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
@@ -419,6 +432,7 @@ fn frame_group(
         wgpu::BindingResource::TextureView(&slides),
         wgpu::BindingResource::Sampler(&slide_sampler),
         wgpu::BindingResource::TextureView(&given),
+        wgpu::BindingResource::Sampler(&point),
     ];
     let entries: Vec<_> =
         (0u32..).zip(entries).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();

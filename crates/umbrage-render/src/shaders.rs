@@ -2,19 +2,17 @@
 
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
 use umbrage::core::DEPTH;
-use umbrage::core::technique::Combination;
-use umbrage::core::wgsl::assemble;
+use std::sync::Arc;
+use umbrage::caster::NO_DEFORM;
+use umbrage::core::technique::{Bias, Combination};
+use umbrage::core::wgsl::{assemble, assemble_with};
 
 const FRAME: &str = include_str!("../wgsl/frame.wgsl");
 const SURFACE: &str = include_str!("../wgsl/surface.wgsl");
 const SHADE: &str = include_str!("../wgsl/shade.wgsl");
 const MESH: &str = include_str!("../wgsl/mesh.wgsl");
 const SCREEN: &str = include_str!("../wgsl/screen.wgsl");
-
-/// The WGSL function that the table's filter of that name defines.
-fn filter_function(combination: &Combination) -> String {
-    format!("umbrage_filter_{}", combination.filter.row().id)
-}
+const CHANNELS: &str = include_str!("../wgsl/channels.wgsl");
 
 /// What a scene's shaders must be able to do. What is not needed is not in their text: software rasterisers, and
 /// many GPUs, pay for both sides of a branch.
@@ -32,26 +30,29 @@ pub struct ShaderNeeds {
     pub placed: bool,
     /// Has any light a slide?
     pub slide: bool,
-    /// The map's view of each light.
-    pub views: Vec<Option<usize>>,
+    /// How many lights there are.
+    pub lights: usize,
+    /// Is any light a point light?
+    pub point: bool,
+    /// Is any light seen from several places?
+    pub places: bool,
+    /// Moves vertices: see [`umbrage::caster::NO_DEFORM`].
+    pub deform: Option<Arc<str>>,
+    /// Weights of the filter `kernel`, in place of its own.
+    pub kernel: Option<Arc<str>>,
 }
 
 /// Up to how many lights are written out one by one: an index that is a constant is far cheaper than one that is not.
 const WRITTEN_OUT: usize = 4;
 
 /// The function that adds up all lights.
-fn lit_by_all(views: &[Option<usize>]) -> String {
-    let sum = if views.len() <= WRITTEN_OUT {
-        let one = |(light, view): (usize, &Option<usize>)| {
-            format!(
-                "    sum += lit_by({light}u, lights[{light}], views[{}], s, p_world, v);\n",
-                view.unwrap_or(0)
-            )
-        };
-        views.iter().enumerate().map(one).collect()
+fn lit_by_all(lights: usize) -> String {
+    let sum = if lights <= WRITTEN_OUT {
+        let one = |light| format!("    sum += lit_by({light}u, lights[{light}], s, p_world, v);\n");
+        (0..lights).map(one).collect()
     } else {
         "    for (var i = 0u; i < frame.light_count; i++) {
-        sum += lit_by(i, lights[i], views[max(lights[i].view, 0)], s, p_world, v);
+        sum += lit_by(i, lights[i], s, p_world, v);
     }
 "
         .to_owned()
@@ -67,36 +68,77 @@ fn lit_by_all(views: &[Option<usize>]) -> String {
 
 /// The share of a light that is seen, without any technique.
 const ALL_VISIBLE: &str = "alias Seen = f32;
-fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen { return 1.0; }
+fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen { return 1.0; }
 ";
 
 /// The share of a light that is seen, where it is given.
 const GIVEN: &str = "alias Seen = vec3f;
-fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen {
+fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {
     return textureLoad(given_v, at_pixel, index, 0).rgb;
 }
 ";
 
+/// The share of a light that is seen, by its maps.
+fn mapped(needs: &ShaderNeeds, combination: &Combination) -> String {
+    let sampler = if combination.compares_in_hardware() { "map_compare" } else { "map_point" };
+    let filter = combination.filter_function();
+    let moved = if combination.bias == Bias::Normal {
+        "umbrage_offset_by_normal(view, p_world, normal, towards)"
+    } else {
+        "p_world"
+    };
+    // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
+    let seen_in = format!(
+        "alias Seen = f32;
+fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> f32 {{
+    let at = umbrage_locate(view, {moved}, normal);
+    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
+    return select(outside, {filter}(maps, {sampler}, view, at), at.inside);
+}}
+"
+    );
+    let face = if needs.point {
+        "select(0u, umbrage_face(p_world - views[first].origin), light.kind == POINT)"
+    } else {
+        "0u"
+    };
+    let one = format!("seen_in(light, views[first + {face}], p_world, normal, towards)");
+    let body = if needs.places {
+        format!(
+            "    let tiles = select(1u, 6u, light.kind == POINT);
+    var sum = 0.0;
+    for (var place = 0u; place < light.places; place++) {{
+        let first = u32(light.view) + place * tiles;
+        sum += {one};
+    }}
+    let seen = sum / f32(max(light.places, 1u));
+"
+        )
+    } else {
+        format!("    let first = u32(max(light.view, 0));\n    let seen = {one};\n")
+    };
+    format!(
+        "{seen_in}fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
+{body}    return select(seen, 1.0, light.view < 0);
+}}
+"
+    )
+}
+
 /// What all shaders begin with: the library, the frame, and the technique's visibility.
 fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
-    // The debug views locate points whatever the technique is.
-    modules.extend(["view", "light", "cookie", "locate"]);
-    let library = assemble(&modules).unwrap_or_else(|e| format!("// {e}\n"));
+    // The debug views locate points and read maps whatever the technique is.
+    modules.extend(["view", "light", "cookie", "locate", "face", "map"]);
+    let own_kernel = needs.kernel.as_deref().filter(|_| modules.contains(&"filter/kernel"));
+    let library = match own_kernel {
+        Some(kernel) => assemble_with(&modules, &[("kernel", kernel)]),
+        None => assemble(&modules),
+    };
+    let library = library.unwrap_or_else(|e| format!("// {e}\n"));
     let visibility = match &needs.combination {
         _ if needs.given => GIVEN.to_owned(),
-        // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
-        Some(combination) => format!(
-            "alias Seen = f32;
-fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) -> Seen {{
-    let at = umbrage_locate(view, p_world);
-    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
-    let seen = select(outside, {}(maps, map_compare, view, at), at.inside);
-    return select(seen, 1.0, light.view < 0);
-}}
-",
-            filter_function(combination)
-        ),
+        Some(combination) => mapped(needs, combination),
         None => ALL_VISIBLE.to_owned(),
     };
     let flags = [
@@ -112,17 +154,18 @@ fn visible_share(index: u32, light: Light, view: UmbrageView, p_world: vec3f) ->
         "const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n{flags}{shared}",
         DEPTH.clear()
     );
-    [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(&needs.views)].join("\n")
+    [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(needs.lights)].join("\n")
 }
 
 /// The shader that draws the scene's meshes.
 pub fn mesh(needs: &ShaderNeeds) -> String {
-    [&prelude(needs), MESH].join("\n")
+    [&prelude(needs), needs.deform.as_deref().unwrap_or(NO_DEFORM), MESH].join("\n")
 }
 
 /// The shader that covers the screen.
 pub fn screen(needs: &ShaderNeeds) -> String {
-    [&prelude(needs), SCREEN].join("\n")
+    let is_color = needs.combination.is_some_and(|c| c.storage.is_color());
+    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }].join("\n")
 }
 
 /// Every shader that the renderer can make, with a name: for validation.
@@ -134,11 +177,19 @@ pub fn all() -> Vec<(String, String)> {
     for combination in combinations {
         for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
-                let views = (0..lights).map(|i| (i % 2 == 0).then_some(i / 2)).collect();
-                let (placed, slide) = (lights != 1, lights > 1);
-                let given = combination.is_none() && lights == 1;
-                let needs =
-                    ShaderNeeds { combination, given, metallic_roughness, blinn, placed, slide, views };
+                let needs = ShaderNeeds {
+                    combination,
+                    given: combination.is_none() && lights == 1,
+                    metallic_roughness,
+                    blinn,
+                    placed: lights != 1,
+                    slide: lights > 1,
+                    lights,
+                    point: lights > 1,
+                    places: lights > WRITTEN_OUT,
+                    deform: None,
+                    kernel: None,
+                };
                 all.push((format!("mesh for {needs:?}"), mesh(&needs)));
                 all.push((format!("screen for {needs:?}"), screen(&needs)));
             }

@@ -15,7 +15,8 @@ struct Frame {
     // The light that the debug views show.
     shown_light: u32,
     exposure: f32,
-    pad: u32,
+    // What deforming surfaces know of time.
+    time_s: f32,
 }
 
 struct Light {
@@ -29,7 +30,7 @@ struct Light {
     range_m: f32,
     // Linear RGB times intensity times exposure.
     color: vec3f,
-    // Index into `views`, or -1: no map.
+    // Index of its first view in `views`, or -1: no map.
     view: i32,
     cone_scale: f32,
     cone_offset: f32,
@@ -38,18 +39,21 @@ struct Light {
     slide: i32,
     near_m: f32,
     far_m: f32,
-    pad: vec2u,
+    // Places on the light from which it is seen, each with one view or, of a point light, six.
+    places: u32,
+    pad: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
-@group(0) @binding(2) var<uniform> views: array<UmbrageView, MAX_LIGHTS>;
-@group(0) @binding(3) var maps: texture_depth_2d_array;
+@group(0) @binding(2) var<storage, read> views: array<UmbrageView>;
+@group(0) @binding(3) var maps: UmbrageMap;
 @group(0) @binding(4) var map_compare: sampler_comparison;
 @group(0) @binding(5) var slides: texture_2d_array<f32>;
 @group(0) @binding(6) var slide_sampler: sampler;
 // V that was found elsewhere, a layer a light; read only by shaders that are made for it.
 @group(0) @binding(7) var given_v: texture_2d_array<f32>;
+@group(0) @binding(8) var map_point: sampler;
 
 // The pixel that is shaded.
 var<private> at_pixel: vec2u;

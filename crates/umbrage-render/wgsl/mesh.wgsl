@@ -43,7 +43,8 @@ struct Instance {
 
 fn world_position(p_object: vec3f, i: Instance) -> vec3f {
     let p = vec4f(p_object, 1.0);
-    return vec3f(dot(i.row_x, p), dot(i.row_y, p), dot(i.row_z, p));
+    let p_world = vec3f(dot(i.row_x, p), dot(i.row_y, p), dot(i.row_z, p));
+    return umbrage_deform(p_world, p_object, frame.time_s);
 }
 
 fn world_direction(d: vec3f, i: Instance) -> vec3f {
@@ -106,10 +107,15 @@ struct Fragment {
 }
 
 // `front` is what the rasteriser says; a surface that may be seen from behind turns its normals to the viewer.
-fn plain_surface(normal: vec3f, front: bool) -> Fragment {
+fn plain_surface(p_world: vec3f, normal: vec3f, front: bool) -> Fragment {
     var s: Surface;
     let turn = select(1.0, -1.0, IS_DOUBLE_SIDED && !front);
     s.shading_normal = normalize(normal) * turn;
+    // Neighbouring pixels of a triangle span its plane. A triangle too thin for that has the shading's normal.
+    let across = cross(dpdx(p_world), dpdy(p_world));
+    let length2 = dot(across, across);
+    s.normal = select(s.shading_normal, across * inverseSqrt(max(length2, 1e-38)), length2 > 1e-38);
+    s.normal *= select(-1.0, 1.0, dot(s.normal, s.shading_normal) >= 0.0);
     s.flags = material.flags;
     s.base_color = material.base_color.rgb;
     s.specular = material.specular;
@@ -118,7 +124,7 @@ fn plain_surface(normal: vec3f, front: bool) -> Fragment {
 }
 
 fn full_surface(in: FullVertex, front: bool) -> Fragment {
-    var f = plain_surface(in.normal, front);
+    var f = plain_surface(in.p_world, in.normal, front);
     f.surface.base_color *= in.color.rgb;
     f.alpha *= in.color.a;
     if HAS_BASE_TEXTURE {
@@ -158,7 +164,7 @@ fn cut_out(alpha: f32) {
 
 @fragment
 fn fs_gbuffer_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4u {
-    return pack_surface(plain_surface(in.normal, front).surface);
+    return pack_surface(plain_surface(in.p_world, in.normal, front).surface);
 }
 
 @fragment
@@ -170,7 +176,7 @@ fn fs_gbuffer_full(in: FullVertex, @builtin(front_facing) front: bool) -> @locat
 
 @fragment
 fn fs_forward_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let f = plain_surface(in.normal, front);
+    let f = plain_surface(in.p_world, in.normal, front);
     at_pixel = vec2u(in.position.xy);
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }

@@ -38,20 +38,22 @@ fn fs_visibility(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let light = lights[index];
     let arriving = incoming(light, here.p_world);
     let facing = dot(here.surface.shading_normal, arriving.towards) > 0.0;
-    let seen = visibility(index, light, views[max(light.view, 0)], here.p_world, arriving.towards);
+    let seen = visibility(index, light, here.surface, here.p_world, arriving.towards);
     return vec4f(vec3f(select(Seen(0.0), seen, facing)), 1.0);
 }
 
-// Distance from near (0) to far (1) along the light's axis.
-fn share_of_depth(light: Light, along_m: f32) -> f32 {
-    return saturate((along_m - light.near_m) / max(light.far_m - light.near_m, 1e-30));
+// The view of the shown light in which a point lies: of the light's first place.
+fn shown_view(light: Light, p_world: vec3f) -> UmbrageView {
+    let first = u32(max(light.view, 0));
+    if light.kind == POINT {
+        return views[first + umbrage_face(p_world - views[first].origin)];
+    }
+    return views[first];
 }
 
-// From what the map stores (reversed) to metres along the light's axis.
-fn along_m(light: Light, stored: f32, perspective: bool) -> f32 {
-    let parallel = light.far_m - stored * (light.far_m - light.near_m);
-    let cone = light.near_m * light.far_m / max(light.near_m + stored * (light.far_m - light.near_m), 1e-30);
-    return select(parallel, cone, perspective);
+// Distance from near (0) to far (1) along the axis of the view.
+fn share_of_depth(view: UmbrageView, stored: f32) -> f32 {
+    return saturate(umbrage_share_from_depth(view, stored));
 }
 
 // Each surface's own distance from the light.
@@ -59,10 +61,9 @@ fn along_m(light: Light, stored: f32, perspective: bool) -> f32 {
 fn fs_distance(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
     let light = lights[frame.shown_light];
-    let view = views[max(light.view, 0)];
-    let at = umbrage_locate(view, here.p_world);
-    let share = share_of_depth(light, along_m(light, at.depth, view.perspective != 0u));
-    return vec4f(vec3f(select(1.0, share, at.inside)), 1.0);
+    let view = shown_view(light, here.p_world);
+    let at = umbrage_locate(view, here.p_world, here.surface.normal);
+    return vec4f(vec3f(select(1.0, share_of_depth(view, at.depth), at.inside)), 1.0);
 }
 
 // The map projected on the scene: what the light saw on the way to each surface.
@@ -70,25 +71,39 @@ fn fs_distance(@builtin(position) position: vec4f) -> @location(0) vec4f {
 fn fs_projected(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
     let light = lights[frame.shown_light];
-    let view = views[max(light.view, 0)];
-    let at = umbrage_locate(view, here.p_world);
-    let texel = vec2u(saturate(at.uv) * vec2f(textureDimensions(maps)));
-    let stored = textureLoad(maps, min(texel, textureDimensions(maps) - 1u), view.layer, 0);
-    let share = share_of_depth(light, along_m(light, stored, view.perspective != 0u));
-    return vec4f(vec3f(select(1.0, share, at.inside)), 1.0);
+    let view = shown_view(light, here.p_world);
+    let at = umbrage_locate(view, here.p_world, here.surface.normal);
+    let stored = umbrage_gather(maps, map_point, view, floor(at.uv / view.texel_uv)).w;
+    return vec4f(vec3f(select(1.0, share_of_depth(view, stored), at.inside)), 1.0);
 }
 
-// The map itself, letter-boxed.
+struct MapPixel {
+    view: UmbrageView,
+    // The texel, as `umbrage_gather` takes it.
+    corner: vec2f,
+    inside: bool,
+}
+
+// The shown light's map, letter-boxed; the six tiles of a point light in two rows.
+fn map_pixel(position: vec4f) -> MapPixel {
+    let light = lights[frame.shown_light];
+    let size = vec2f(textureDimensions(depth));
+    let tiles = select(vec2f(1.0), vec2f(3.0, 2.0), light.kind == POINT);
+    let side = min(size.x / tiles.x, size.y / tiles.y);
+    let place = (position.xy - 0.5 * (size - side * tiles)) / side;
+    let inside = all(place >= vec2f(0.0)) && all(place < tiles);
+    let tile = vec2u(clamp(floor(place), vec2f(0.0), tiles - 1.0));
+    // Right and left, up and down, back and front stand above each other.
+    let view = views[u32(max(light.view, 0)) + tile.x * 2u + tile.y];
+    return MapPixel(view, floor(fract(place) / view.texel_uv), inside);
+}
+
+const BESIDE_THE_MAP = vec4f(0.02, 0.02, 0.025, 1.0);
+
+// The map itself.
 @fragment
 fn fs_depth(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let light = lights[frame.shown_light];
-    let view = views[max(light.view, 0)];
-    let size = vec2f(textureDimensions(depth));
-    let side = min(size.x, size.y);
-    let uv = (position.xy - 0.5 * (size - side)) / side;
-    if any(uv < vec2f(0.0)) || any(uv >= vec2f(1.0)) {
-        return vec4f(0.02, 0.02, 0.025, 1.0);
-    }
-    let stored = textureLoad(maps, vec2u(uv * vec2f(textureDimensions(maps))), view.layer, 0);
-    return vec4f(vec3f(share_of_depth(light, along_m(light, stored, view.perspective != 0u))), 1.0);
+    let here = map_pixel(position);
+    let stored = umbrage_gather(maps, map_point, here.view, here.corner).w;
+    return select(BESIDE_THE_MAP, vec4f(vec3f(share_of_depth(here.view, stored)), 1.0), here.inside);
 }

@@ -5,11 +5,11 @@ fn towards_eye(p_world: vec3f) -> vec3f {
     return normalize(frame.eye - p_world * frame.eye_w);
 }
 
-// Visibility V of a light from a point: 0 behind it and outside its cone, else what the technique says. `Seen` is a
+// Visibility V of a light from a surface: 0 behind it and outside its cone, else what the technique says. `Seen` is a
 // number, or three where V is given by the colour.
-fn visibility(index: u32, light: Light, view: UmbrageView, p_world: vec3f, towards_light: vec3f) -> Seen {
+fn visibility(index: u32, light: Light, s: Surface, p_world: vec3f, towards_light: vec3f) -> Seen {
     let in_cone = light.kind != SPOT || dot(-towards_light, light.direction) >= light.cos_outer;
-    return select(Seen(0.0), visible_share(index, light, view, p_world), in_cone);
+    return select(Seen(0.0), visible_share(index, light, p_world, s.normal, towards_light), in_cone);
 }
 
 struct Incoming {
@@ -71,7 +71,7 @@ fn answer_blinn(s: Surface, n_dot_l: f32, l: vec3f, v: vec3f) -> Answer {
 }
 
 // What one light adds to a surface.
-fn lit_by(index: u32, light: Light, view: UmbrageView, s: Surface, p_world: vec3f, v: vec3f) -> vec3f {
+fn lit_by(index: u32, light: Light, s: Surface, p_world: vec3f, v: vec3f) -> vec3f {
     let arriving = incoming(light, p_world);
     let n_dot_l = dot(s.shading_normal, arriving.towards);
     if n_dot_l <= 0.0 {
@@ -87,7 +87,7 @@ fn lit_by(index: u32, light: Light, view: UmbrageView, s: Surface, p_world: vec3
             answer = blinn;
         }
     }
-    let seen = visibility(index, light, view, p_world, arriving.towards);
+    let seen = visibility(index, light, s, p_world, arriving.towards);
     return arriving.illuminance * (answer.diffuse * mix(Seen(frame.fill), Seen(1.0), seen) + answer.specular * seen);
 }
 

@@ -3,6 +3,8 @@
 struct Surface {
     // World space, interpolated and bent by the normal map. Unit length, towards the viewer's side.
     shading_normal: vec3f,
+    // The triangle's own, on the same side. Unit length.
+    normal: vec3f,
     // Linear.
     base_color: vec3f,
     // Blinn: colour of the highlight. Else: metallic in x.
@@ -27,14 +29,14 @@ fn unpack_normal(packed: u32) -> vec3f {
     return normalize(vec3f(p + select(vec2f(t), vec2f(-t), p >= vec2f(0.0)), z));
 }
 
-// Base colour is kept as its square root: 8 bits then suffice for the eye. The last word is free.
+// Base colour is kept as its square root: 8 bits then suffice for the eye.
 fn pack_surface(s: Surface) -> vec4u {
     let flags = f32(s.flags) / 255.0;
     return vec4u(
         pack_normal(s.shading_normal),
         pack4x8unorm(vec4f(sqrt(s.base_color), flags)),
         pack4x8unorm(vec4f(s.specular, s.gloss)),
-        0u,
+        pack_normal(s.normal),
     );
 }
 
@@ -43,6 +45,7 @@ fn unpack_surface(texel: vec4u) -> Surface {
     let answer = unpack4x8unorm(texel.z);
     return Surface(
         unpack_normal(texel.x),
+        unpack_normal(texel.w),
         base.rgb * base.rgb,
         answer.rgb,
         answer.a,

@@ -1,9 +1,13 @@
 //! The pass that draws casters into a map.
 
-use crate::ShadowMaps;
+use crate::format::SCRATCH_DEPTH;
+use crate::{ChosenFormat, ShadowMaps};
+use glam::Mat4;
 use std::num::NonZeroU64;
 use umbrage_core::DEPTH;
+use umbrage_core::fit::ShadowView;
 use umbrage_core::plan::Pass;
+use umbrage_core::technique::Storage;
 
 /// The vertex buffers that caster pipelines read.
 ///
@@ -42,6 +46,58 @@ pub fn depth_compare() -> wgpu::CompareFunction {
     if DEPTH.is_reversed() { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
 }
 
+/// Mirrors `CasterView` of `wgsl/caster.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
+/// view, [`GpuCasterView::STRIDE`] bytes apart.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct GpuCasterView {
+    /// World to clip space.
+    pub clip_from_world: Mat4,
+    /// Metres.
+    pub near_m: f32,
+    /// Metres.
+    pub far_m: f32,
+    /// 1 or 0.
+    pub perspective: u32,
+    /// Texels.
+    pub offset_slope: f32,
+    /// Stored depth.
+    pub offset_depth: f32,
+    /// Seconds.
+    pub time_s: f32,
+    /// Nothing.
+    pub pad: [f32; 2],
+}
+
+impl GpuCasterView {
+    /// Bytes from one view to the next: every device allows dynamic offsets of this many.
+    pub const STRIDE: u32 = 256;
+
+    /// What a planned pass draws a view with.
+    pub fn new(view: &ShadowView, pass: &Pass, time_s: f32) -> Self {
+        Self {
+            clip_from_world: view.clip_from_world(),
+            near_m: view.near_m,
+            far_m: view.far_m,
+            perspective: u32::from(view.perspective),
+            offset_slope: pass.offset.slope.abs(),
+            // Polygon offset counts in steps of the format; those of a 24-bit format stand for a float's.
+            offset_depth: pass.offset.constant.unsigned_abs() as f32 * 2f32.powi(-24),
+            time_s,
+            pad: [0.0; 2],
+        }
+    }
+}
+
+/// Casters that nobody deforms: the default of [`CasterPipelines::new`]'s `deform`.
+pub const NO_DEFORM: &str = include_str!("../wgsl/deform.wgsl");
+
+/// The text of the caster shader, with a user's `fn umbrage_deform(p_world: vec3f, p_object: vec3f, time_s: f32) -> vec3f`.
+pub fn caster_shader(deform: &str) -> String {
+    let away = format!("const AWAY = {:?};\n", DEPTH.away());
+    [deform, &away, include_str!("../wgsl/caster.wgsl")].join("\n")
+}
+
 /// Pipelines that draw casters, and the layouts that they take.
 #[derive(Debug)]
 pub struct CasterPipelines {
@@ -53,7 +109,7 @@ pub struct CasterPipelines {
     pub closed_mirrored: wgpu::RenderPipeline,
     /// Casters whose texture cuts holes.
     pub cut_out: wgpu::RenderPipeline,
-    /// Group 0: `clip_from_world`, a uniform buffer with a dynamic offset.
+    /// Group 0: a [`GpuCasterView`], a uniform buffer with a dynamic offset.
     pub view_layout: wgpu::BindGroupLayout,
 }
 
@@ -83,30 +139,47 @@ impl CasterPipelines {
         })
     }
 
-    /// Makes the pipelines of a planned pass for maps of `format`. `cut_out_layout` is [`Self::cut_out_layout`].
+    /// Makes the pipelines of a planned pass for maps of `format`. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
+    /// [`NO_DEFORM`] or a user's own.
     pub fn new(
         device: &wgpu::Device,
-        format: wgpu::TextureFormat,
+        format: &ChosenFormat,
         pass: &Pass,
         cut_out_layout: &wgpu::BindGroupLayout,
+        deform: &str,
     ) -> Self {
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage caster"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("../wgsl/caster.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(caster_shader(deform).into()),
         });
         let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage caster view"),
             entries: &[wgpu::BindGroupLayoutEntry {
                 binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
                 ty: wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Uniform,
                     has_dynamic_offset: true,
-                    min_binding_size: NonZeroU64::new(64),
+                    min_binding_size: NonZeroU64::new(size_of::<GpuCasterView>() as u64),
                 },
                 count: None,
             }],
         });
+        let is_color = format.storage.is_color();
+        let channels = match format.storage {
+            Storage::Packed1 => 1.0,
+            Storage::Packed2 => 2.0,
+            Storage::Packed3 => 3.0,
+            _ => 0.0,
+        };
+        let constants = [("CHANNELS", channels)];
+        let color_target = [Some(wgpu::ColorTargetState::from(format.format))];
+        // Colour targets take the bias in their shader.
+        let bias = if is_color {
+            wgpu::DepthBiasState::default()
+        } else {
+            wgpu::DepthBiasState { constant: pass.offset.constant, slope_scale: pass.offset.slope, clamp: 0.0 }
+        };
         let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
@@ -125,22 +198,25 @@ impl CasterPipelines {
                 },
                 primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
-                    format,
+                    format: if is_color { SCRATCH_DEPTH } else { format.format },
                     depth_write_enabled: Some(true),
                     depth_compare: Some(depth_compare()),
                     stencil: Default::default(),
-                    bias: wgpu::DepthBiasState {
-                        constant: pass.offset.constant,
-                        slope_scale: pass.offset.slope,
-                        clamp: 0.0,
-                    },
+                    bias,
                 }),
                 multisample: Default::default(),
-                fragment: cut_out.then(|| wgpu::FragmentState {
+                fragment: (cut_out || is_color).then(|| wgpu::FragmentState {
                     module: &shader,
-                    entry_point: Some("fs_cut_out"),
-                    compilation_options: Default::default(),
-                    targets: &[],
+                    entry_point: Some(match (cut_out, is_color) {
+                        (true, false) => "fs_cut_out",
+                        (true, true) => "fs_cut_out_color",
+                        _ => "fs_solid_color",
+                    }),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: if is_color { &constants } else { &[] },
+                        ..Default::default()
+                    },
+                    targets: if is_color { &color_target } else { &[] },
                 }),
                 multiview_mask: None,
                 cache: None,
@@ -172,15 +248,23 @@ pub fn record_caster_pass<'a>(
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) {
     let Some(view) = maps.layer(layer) else { return };
+    // Colour maps hold distance, and begin as far away as there is.
+    let color = [Some(wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
+    })];
+    let (depth, store) = match maps.scratch() {
+        Some(scratch) => (scratch, wgpu::StoreOp::Discard),
+        None => (view, wgpu::StoreOp::Store),
+    };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(pass.name),
-        color_attachments: &[],
+        color_attachments: if maps.scratch().is_some() { &color } else { &[] },
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(pass.clear_depth),
-                store: wgpu::StoreOp::Store,
-            }),
+            view: depth,
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(pass.clear_depth), store }),
             stencil_ops: None,
         }),
         timestamp_writes: timestamps,

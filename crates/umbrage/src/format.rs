@@ -1,4 +1,4 @@
-//! Which depth format a map gets: the adapter is asked first.
+//! Which format a map gets: the adapter is asked first.
 
 use crate::ShadowError;
 use umbrage_core::technique::Storage;
@@ -14,8 +14,18 @@ pub struct ChosenFormat {
     pub why: String,
 }
 
-/// The storages that are formats, best first.
-pub const BY_PRECISION: [Storage; 3] = [Storage::Depth32Float, Storage::Depth24, Storage::Depth16];
+/// What `auto` takes, best first: a depth texture where there is one to draw to and to sample, else distance in colour.
+pub const BY_PRECISION: [Storage; 6] = [
+    Storage::Depth32Float,
+    Storage::Depth24,
+    Storage::Depth16,
+    Storage::R32Float,
+    Storage::Packed3,
+    Storage::Packed2,
+];
+
+/// The depth buffer of maps that are colour.
+pub const SCRATCH_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// The format of a storage, `None` for `auto`.
 pub fn format_of(storage: Storage) -> Option<wgpu::TextureFormat> {
@@ -24,6 +34,8 @@ pub fn format_of(storage: Storage) -> Option<wgpu::TextureFormat> {
         Storage::Depth16 => Some(wgpu::TextureFormat::Depth16Unorm),
         Storage::Depth24 => Some(wgpu::TextureFormat::Depth24Plus),
         Storage::Depth32Float => Some(wgpu::TextureFormat::Depth32Float),
+        Storage::R32Float => Some(wgpu::TextureFormat::R32Float),
+        Storage::Packed1 | Storage::Packed2 | Storage::Packed3 => Some(wgpu::TextureFormat::Rgba8Unorm),
     }
 }
 
@@ -55,7 +67,7 @@ pub fn choose_format(
         lacks,
         available: available.iter().map(|s| s.row().id).collect::<Vec<_>>().join(", "),
     };
-    let Some(storage) = chosen else { return Err(refused(asked, "every depth format")) };
+    let Some(storage) = chosen else { return Err(refused(asked, "every format")) };
     if let Some(lacks) = lacks_of(storage) {
         return Err(refused(storage, lacks));
     }

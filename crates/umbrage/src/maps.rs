@@ -1,13 +1,16 @@
-//! The maps of all lights: one depth texture array, a layer for each view.
+//! The maps of all lights: one texture array, a layer for each view.
 
+use crate::format::SCRATCH_DEPTH;
 use crate::{ChosenFormat, ShadowError};
 
-/// Depth maps of equal size and format, one layer for each view, in one texture.
+/// Maps of equal size and format, one layer for each view, in one texture.
 #[derive(Debug)]
 pub struct ShadowMaps {
     texture: wgpu::Texture,
     layers: Vec<wgpu::TextureView>,
     array: wgpu::TextureView,
+    /// Depth while a map of colour is drawn; one for all layers.
+    scratch: Option<wgpu::TextureView>,
     bytes_per_texel: u32,
 }
 
@@ -27,28 +30,39 @@ impl ShadowMaps {
         if size_texel == 0 || size_texel > limit || layers == 0 || layers > layer_limit {
             return Err(ShadowError::TooLarge { size_texel, layers, limit, layer_limit });
         }
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("umbrage shadow maps"),
-            size: wgpu::Extent3d { width: size_texel, height: size_texel, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: format.format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
+        let is_color = format.storage.is_color();
+        let make = |label, layers, format, usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size_texel, height: size_texel, depth_or_array_layers: layers },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let texture =
+            make("umbrage shadow maps", layers, format.format, drawn | wgpu::TextureUsages::TEXTURE_BINDING);
+        let scratch = is_color.then(|| {
+            make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default())
         });
+        let aspect = if is_color { wgpu::TextureAspect::All } else { wgpu::TextureAspect::DepthOnly };
         let view = |base_array_layer, count, dimension| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
                 base_array_layer,
                 array_layer_count: Some(count),
-                aspect: wgpu::TextureAspect::DepthOnly,
+                aspect,
                 ..Default::default()
             })
         };
         Ok(Self {
             layers: (0..layers).map(|layer| view(layer, 1, wgpu::TextureViewDimension::D2)).collect(),
             array: view(0, layers, wgpu::TextureViewDimension::D2Array),
+            scratch,
             bytes_per_texel: format.storage.bytes_per_texel(),
             texture,
         })
@@ -64,26 +78,39 @@ impl ShadowMaps {
         self.layers.get(layer as usize)
     }
 
+    /// The depth that colour maps are drawn with; `None` where the map is depth itself.
+    pub fn scratch(&self) -> Option<&wgpu::TextureView> {
+        self.scratch.as_ref()
+    }
+
     /// Width and height of a map, texels.
     pub fn size_texel(&self) -> u32 {
         self.texture.width()
     }
 
-    /// Memory of all layers, bytes: linear in the number of lights, whatever the scene.
+    /// Memory of all layers, and of the depth that colour maps are drawn with, bytes: linear in the number of views, whatever
+    /// the scene.
     pub fn memory_bytes(&self) -> u64 {
         let texels = u64::from(self.texture.width()) * u64::from(self.texture.height());
-        texels * u64::from(self.texture.depth_or_array_layers()) * u64::from(self.bytes_per_texel)
+        let layers = u64::from(self.texture.depth_or_array_layers()) * u64::from(self.bytes_per_texel);
+        let scratch = if self.scratch.is_some() { 4 } else { 0 };
+        texels * (layers + scratch)
     }
 }
 
-/// The sampler that compares: nearest or linear, clamped to the edge, in the sense of [`umbrage_core::DEPTH`].
-pub fn comparison_sampler(device: &wgpu::Device, filter: umbrage_core::technique::Filter) -> wgpu::Sampler {
-    let mode = if filter.blends_comparisons() { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
+/// The sampler that compares and blends the four nearest comparisons, clamped to the edge, in the sense of
+/// [`umbrage_core::DEPTH`].
+pub fn comparison_sampler(device: &wgpu::Device) -> wgpu::Sampler {
     device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("umbrage comparison"),
-        mag_filter: mode,
-        min_filter: mode,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
         compare: Some(crate::caster::depth_compare()),
         ..Default::default()
     })
+}
+
+/// The sampler of all other lookups: nearest, clamped to the edge.
+pub fn point_sampler(device: &wgpu::Device) -> wgpu::Sampler {
+    device.create_sampler(&wgpu::SamplerDescriptor { label: Some("umbrage texels"), ..Default::default() })
 }

@@ -23,7 +23,7 @@ pub(super) fn fit(
     let (size, center) = (bounds_light.size(), bounds_light.center());
     // Square texels: the longer side sets their size. A texel of margin keeps the outermost caster inside the map.
     let half_m = 0.5 * size.x.max(size.y).max(size.z * 1e-3).max(f32::MIN_POSITIVE.sqrt());
-    let half_m = half_m * (1.0 + 2.0 / options.size_texel.max(4) as f32);
+    let half_m = half_m * options.widened() * (1.0 + 2.0 / options.size_texel.max(4) as f32);
     let depth_m = size.z.max(half_m * 1e-3);
     let near_m = 0.01 * depth_m;
     let back_off_m = bounds_light.max.z + 2.0 * near_m;
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn every_corner_is_inside_at_any_scale_and_direction() {
-        let options = FitOptions { size_texel: 512, least_near: 1e-4 };
+        let options = FitOptions { size_texel: 512, least_near: 1e-4, border_texel: 0.0 };
         for scale in [1e-3f32, 1.0, 1e5] {
             for direction in [Vec3::NEG_Y, Vec3::new(1.0, -2.0, 0.3), Vec3::X] {
                 let kind = LightKind::Directional;

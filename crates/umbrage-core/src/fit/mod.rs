@@ -1,6 +1,7 @@
 //! Fits: from a light and what it may shadow to the view that draws its map. No fit ever sees a GPU.
 
 mod directional;
+mod point;
 mod spot;
 
 use crate::bounds::Aabb;
@@ -57,6 +58,16 @@ pub struct FitOptions {
     /// The near plane never comes closer than this share of the far plane's distance. It bounds the loss of
     /// precision of coarse depth formats; casters closer to the light are cut off. 0..1.
     pub least_near: f32,
+    /// How far a filter reaches, texels: the map is so much wider on each side than what it is for, so that no lookup has to
+    /// leave it. At most a quarter of the map. 0 or more.
+    pub border_texel: f32,
+}
+
+impl FitOptions {
+    /// How much wider the map is than what it is for.
+    fn widened(&self) -> f32 {
+        1.0 / (1.0 - 2.0 * (self.border_texel / self.size_texel.max(1) as f32).min(0.25))
+    }
 }
 
 /// Why a light got no view.
@@ -69,20 +80,33 @@ pub enum FitError {
     /// No caster or receiver lies in the light's reach: there is nothing to draw and all is lit.
     #[error("nothing lies in the light's reach")]
     NothingInReach,
-    /// The technique has no view for this kind of light.
-    #[error("a {0} light has no shadow map yet; it is drawn without shadow")]
+    /// One view cannot hold what this kind of light lights.
+    #[error("a {0} light has no single view; fit all of its views")]
     NoView(&'static str),
 }
 
-/// Fits the views of a light around boxes in world space.
+/// Fits the one view of a spot or directional light around boxes in world space.
 ///
 /// # Errors
-/// See [`FitError`]; each says what the caller may do.
+/// See [`FitError`]; each says what the caller may do. A point light has no single view: see [`fit_all`].
 pub fn fit(light: &Light, bounds_world: &[Aabb], options: &FitOptions) -> Result<ShadowView, FitError> {
     light.check()?;
     match light.kind {
         LightKind::Spot { outer_rad, .. } => spot::fit(light, outer_rad, bounds_world, options),
         LightKind::Directional => directional::fit(light, bounds_world, options),
         LightKind::Point => Err(FitError::NoView("point")),
+    }
+}
+
+/// Fits all views of a light around boxes in world space: one, or the six tiles of a point light in the order +X, -X, +Y, -Y,
+/// +Z, -Z of world space (`umbrage_face` in `wgsl/face.wgsl` picks among them).
+///
+/// # Errors
+/// See [`FitError`].
+pub fn fit_all(light: &Light, bounds_world: &[Aabb], options: &FitOptions) -> Result<Vec<ShadowView>, FitError> {
+    light.check()?;
+    match light.kind {
+        LightKind::Point => point::tiles(light, bounds_world, options),
+        _ => Ok(vec![fit(light, bounds_world, options)?]),
     }
 }

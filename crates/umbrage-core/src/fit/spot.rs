@@ -6,7 +6,7 @@ use crate::depth::DEPTH;
 use crate::frustum::Frustum;
 use crate::light::Light;
 use crate::projection::perspective;
-use glam::Mat4;
+use glam::{Mat3, Mat4};
 
 pub(super) fn fit(
     light: &Light,
@@ -14,10 +14,22 @@ pub(super) fn fit(
     bounds_world: &[Aabb],
     options: &FitOptions,
 ) -> Result<ShadowView, FitError> {
+    pyramid(light, light.world_from_light_rotation(), outer_rad.tan(), bounds_world, options)
+}
+
+/// A square pyramid from the light's place along -Z of `world_from_light_rotation`, `tan_half` wide to each side and wider by
+/// the border that was asked for.
+pub(super) fn pyramid(
+    light: &Light,
+    world_from_light_rotation: Mat3,
+    tan_half: f32,
+    bounds_world: &[Aabb],
+    options: &FitOptions,
+) -> Result<ShadowView, FitError> {
     let world_from_light =
-        Mat4::from_translation(light.position_world) * Mat4::from_mat3(light.world_from_light_rotation());
+        Mat4::from_translation(light.position_world) * Mat4::from_mat3(world_from_light_rotation);
     let light_from_world = world_from_light.inverse();
-    let tan_outer = outer_rad.tan();
+    let tan_outer = tan_half * options.widened();
 
     let depth_of = |bounds: &Aabb| {
         let depths = bounds.corners().map(|corner| -light_from_world.transform_point3(corner).z);
@@ -64,7 +76,7 @@ mod tests {
     use crate::lookup::locate;
     use glam::Vec3;
 
-    const OPTIONS: FitOptions = FitOptions { size_texel: 512, least_near: 1e-4 };
+    const OPTIONS: FitOptions = FitOptions { size_texel: 512, least_near: 1e-4, border_texel: 0.0 };
 
     fn around(center: Vec3, half: f32) -> Aabb {
         Aabb { min: center - half, max: center + half }

@@ -45,6 +45,8 @@ macro_rules! choices {
 
 const EMPTY: Choice = Choice { id: "", label: "", summary: "", source: None, modules: &[], params: &[] };
 
+const WYNN: Source = Source { paper: "WYNN", year: 2001 };
+const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
 
 choices! {
@@ -84,6 +86,42 @@ choices! {
             params: &[MAP_SIZE],
             ..EMPTY
         };
+        /// Distance in a float colour target.
+        R32Float = Choice {
+            id: "r32f",
+            label: "Float distance",
+            summary: "distance from the light in a 32-bit float colour target, compared in the shader",
+            params: &[MAP_SIZE],
+            source: Some(WYNN),
+            ..EMPTY
+        };
+        /// Distance in one 8-bit channel.
+        Packed1 = Choice {
+            id: "packed1",
+            label: "8-bit packed",
+            summary: "distance in one 8-bit channel of a colour target: 256 steps, to show that they are too few",
+            params: &[MAP_SIZE],
+            source: Some(WYNN),
+            ..EMPTY
+        };
+        /// Distance in two 8-bit channels.
+        Packed2 = Choice {
+            id: "packed2",
+            label: "16-bit packed",
+            summary: "distance in two 8-bit channels of a colour target",
+            params: &[MAP_SIZE],
+            source: Some(WYNN),
+            ..EMPTY
+        };
+        /// Distance in three 8-bit channels.
+        Packed3 = Choice {
+            id: "packed3",
+            label: "24-bit packed",
+            summary: "distance in three 8-bit channels of a colour target: any hardware has it",
+            params: &[MAP_SIZE],
+            source: Some(WYNN),
+            ..EMPTY
+        };
     }
 }
 
@@ -95,7 +133,6 @@ choices! {
             id: "fitted",
             label: "Fitted",
             summary: "the light's cone (or box), with near and far fitted to what is in it",
-            modules: &["locate"],
             ..EMPTY
         };
     }
@@ -138,6 +175,32 @@ choices! {
             params: &[MATRIX_BIAS],
             ..EMPTY
         };
+        /// Nothing to set.
+        Auto = Choice {
+            id: "auto",
+            label: "Automatic",
+            summary: "EXPERIMENT",
+            params: &[PLANE_MARGIN, NORMAL_OFFSET, CONE, ANCHOR, SLOPE_FACTOR],
+            ..EMPTY
+        };
+        /// The receiver moved along its normal.
+        Normal = Choice {
+            id: "normal",
+            label: "Normal offset",
+            summary: "the receiver is moved along its normal before it is looked up, most where the light grazes it",
+            source: Some(Source { paper: "Holbert, Saying Goodbye to Shadow Acne", year: 2011 }),
+            params: &[NORMAL_OFFSET, CONSTANT],
+            ..EMPTY
+        };
+        /// The receiver's plane.
+        ReceiverPlane = Choice {
+            id: "receiver-plane",
+            label: "Receiver plane",
+            summary: "each texel is compared with the receiver's plane at the texel's centre",
+            source: Some(Source { paper: "Schuler, Eliminating Surface Acne with Gradient Shadow Mapping", year: 2005 }),
+            params: &[PLANE_MARGIN],
+            ..EMPTY
+        };
     }
 }
 
@@ -149,7 +212,6 @@ choices! {
             id: "nearest",
             label: "Nearest",
             summary: "one comparison with the texel that holds the receiver",
-            modules: &["filter/nearest"],
             ..EMPTY
         };
         /// Four comparisons, blended.
@@ -161,44 +223,77 @@ choices! {
                 paper: "Reeves, Salesin and Cook, Rendering Antialiased Shadows with Depth Maps",
                 year: 1987,
             }),
-            modules: &["filter/linear"],
+            ..EMPTY
+        };
+        /// All comparisons in a box.
+        Pcf = Choice {
+            id: "pcf",
+            label: "PCF",
+            summary: "comparisons with all texels of a box, blended: soft edges of one width",
+            source: Some(Source {
+                paper: "Reeves, Salesin and Cook, Rendering Antialiased Shadows with Depth Maps",
+                year: 1987,
+            }),
+            params: &[WIDTH],
+            ..EMPTY
+        };
+        /// A kernel of the user's own.
+        Kernel = Choice {
+            id: "kernel",
+            label: "Own kernel",
+            summary: "comparisons with all texels that a kernel reaches, blended by its weights: a bell, or your own WGSL",
+            source: Some(BJORKE),
+            params: &[WIDTH],
             ..EMPTY
         };
     }
 }
 
 impl Filter {
-    /// How far from the receiver, along either axis of the map, the centre of a texel may lie that counts. Texels.
-    pub fn reach_texel(self) -> f32 {
-        match self {
-            Self::Nearest => 0.5,
-            Self::Linear => 1.0,
-        }
-    }
-
-    /// Lookups of the map for each lit pixel; one that the hardware blends from four texels counts once.
-    pub fn taps(self) -> u32 {
-        match self {
-            Self::Nearest | Self::Linear => 1,
-        }
-    }
-
-    /// Does the comparison sampler blend the four nearest comparisons?
-    pub fn blends_comparisons(self) -> bool {
-        match self {
-            Self::Nearest => false,
-            Self::Linear => true,
-        }
+    /// Is its width a parameter?
+    pub fn has_width(self) -> bool {
+        self.row().params.iter().any(|param| param.name == WIDTH.name)
     }
 }
 
+/// How far a stored depth may be from what was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Steps {
+    /// In stored depth.
+    pub depth: f32,
+    /// As a share of the stored depth.
+    pub relative: f32,
+    /// As a share of the distance from near to far.
+    pub share: f32,
+}
+
 impl Storage {
-    /// Bytes of a texel; for `auto`, those of its first choice.
+    /// Bytes of a texel; for `auto`, those of its first choice. The depth that a colour map is drawn with is not counted.
     pub fn bytes_per_texel(self) -> u32 {
         match self {
             Self::Depth16 => 2,
             Self::Auto | Self::Depth24 | Self::Depth32Float => 4,
+            Self::R32Float | Self::Packed1 | Self::Packed2 | Self::Packed3 => 4,
         }
+    }
+
+    /// How far a stored depth may be from what was drawn: rounding of the format, and of the rasteriser before it.
+    pub fn steps(self) -> Steps {
+        let float = Steps { relative: 2f32.powi(-22), ..Steps::default() };
+        match self {
+            Self::Depth16 => Steps { depth: 2f32.powi(-16), ..float },
+            Self::Depth24 => Steps { depth: 2f32.powi(-24), ..float },
+            Self::Auto | Self::Depth32Float => float,
+            Self::R32Float => Steps { share: 2f32.powi(-24), ..float },
+            Self::Packed1 => Steps { share: 2f32.powi(-8), ..float },
+            Self::Packed2 => Steps { share: 2f32.powi(-16), ..float },
+            Self::Packed3 => Steps { share: 2f32.powi(-23), ..float },
+        }
+    }
+
+    /// Is it a colour target that holds distance, not a depth texture?
+    pub fn is_color(self) -> bool {
+        self.steps().share > 0.0
     }
 
     /// The nearest that a near plane should come to the light, as a share of the far plane's distance, so that the
@@ -207,7 +302,7 @@ impl Storage {
         match self {
             Self::Depth16 => 0.02,
             Self::Depth24 => 1e-3,
-            Self::Auto | Self::Depth32Float => 1e-4,
+            _ => 1e-4,
         }
     }
 }
@@ -235,7 +330,7 @@ const SLOPE_FACTOR: Param = Param {
         rule: "twice the filter's reach: 1 for nearest, 2 for linear",
         // A texel that counts lies at most `reach` away along both axes, so a plane's depth there differs by at most
         // reach * (|dz/dx| + |dz/dy|), and the hardware's slope is the larger of the two.
-        value: |combination| 2.0 * combination.filter.reach_texel(),
+        value: |combination| 2.0 * combination.reach_texel(5.0),
     },
     help: "how many times a triangle's depth slope, for each texel, the map is pushed away from the light",
     cost: "none; too much detaches the shadow from a caster on a steep receiver",
@@ -251,6 +346,44 @@ const CONSTANT: Param = Param {
     default: ParamDefault::Fixed(4.0),
     help: "how many of the format's smallest steps the map is pushed away from the light",
     cost: "none; too much detaches the shadow from its caster",
+};
+
+const PLANE_MARGIN: Param = Param {
+    name: "plane_margin",
+    label: "Margin",
+    unit: "texel",
+    min: 0.0,
+    max: 100.0,
+    step: 0.01,
+    default: ParamDefault::Fixed(0.0),
+    help: "how far a texel must lie before the receiver's plane to block it, in widths of a texel",
+    cost: "none",
+};
+const CONE: Param = Param { name: "cone", label: "", unit: "", min: 0.0, max: 1e6, step: 0.1, default: ParamDefault::Fixed(8.0), help: "", cost: "" };
+const ANCHOR: Param = Param { name: "anchor", label: "", unit: "", min: 0.0, max: 1e6, step: 0.1, default: ParamDefault::Fixed(0.75), help: "", cost: "" };
+
+const NORMAL_OFFSET: Param = Param {
+    name: "normal_offset",
+    label: "Normal offset",
+    unit: "texel",
+    min: 0.0,
+    max: 64.0,
+    step: 0.1,
+    default: ParamDefault::Fixed(1.0),
+    help: "how far a receiver that the light grazes is moved along its normal, in widths of a texel",
+    cost: "none; too much moves shadows off their casters",
+};
+
+const WIDTH: Param = Param {
+    name: "width",
+    label: "Width",
+    unit: "texel",
+    min: 1.0,
+    max: 17.0,
+    step: 1.0,
+    default: ParamDefault::Fixed(5.0),
+    help: "how wide the filter is",
+    cost: "lookups grow with its square: ((width + 1) / 2)^2 gathers",
 };
 
 const MATRIX_BIAS: Param = Param {
@@ -305,8 +438,70 @@ impl Combination {
         self.rows().into_iter().flat_map(|row| row.params)
     }
 
+    /// Is the comparison left to the hardware's comparison sampler? It has one depth for all texels, and depth textures only.
+    pub fn compares_in_hardware(&self) -> bool {
+        self.filter == Filter::Linear && !self.storage.is_color() && self.compare_module() == "compare/plain"
+    }
+
+    fn compare_module(&self) -> &'static str {
+        match self.bias {
+            Bias::Auto => "compare/auto",
+            Bias::ReceiverPlane => "compare/plane",
+            _ => "compare/plain",
+        }
+    }
+
+    fn filter_module(&self) -> &'static str {
+        match self.filter {
+            Filter::Nearest => "filter/nearest",
+            Filter::Linear if self.compares_in_hardware() => "filter/linear_hardware",
+            Filter::Linear => "filter/linear",
+            Filter::Pcf | Filter::Kernel => "filter/kernel",
+        }
+    }
+
+    /// The WGSL function that filters: `umbrage_filter_...`, with the map, a sampler, the view and the texel as arguments.
+    pub fn filter_function(&self) -> String {
+        self.filter_module().replacen("filter/", "umbrage_filter_", 1)
+    }
+
+    /// How far from the receiver, along either axis of the map, the centre of a texel may lie that counts, texels.
+    /// `width_texel` is the filter's width, where it has one.
+    pub fn reach_texel(&self, width_texel: f32) -> f32 {
+        match self.filter {
+            Filter::Nearest => 0.5,
+            Filter::Linear => 1.0,
+            Filter::Pcf | Filter::Kernel => 0.5 * (width_texel + 1.0),
+        }
+    }
+
+    /// Lookups of the map for each lit pixel: a gather counts once.
+    pub fn taps(&self, width_texel: f32) -> u32 {
+        let quads = (0.5 * (width_texel + 1.0)).ceil() as u32;
+        let lookups = match self.filter {
+            Filter::Nearest | Filter::Linear => 1,
+            Filter::Pcf | Filter::Kernel => quads * quads,
+        };
+        let channels = match self.storage {
+            Storage::Packed2 => 2,
+            Storage::Packed3 => 3,
+            _ => 1,
+        };
+        lookups * channels
+    }
+
     /// The WGSL modules of the four choices.
     pub fn modules(&self) -> Vec<&'static str> {
-        self.rows().into_iter().flat_map(|row| row.modules).copied().collect()
+        let map = match self.storage {
+            Storage::Auto | Storage::Depth16 | Storage::Depth24 | Storage::Depth32Float => "map/depth",
+            Storage::R32Float => "map/distance",
+            Storage::Packed1 => "map/packed1",
+            Storage::Packed2 => "map/packed2",
+            Storage::Packed3 => "map/packed3",
+        };
+        let mut modules = vec!["locate", map, self.compare_module(), self.filter_module()];
+        modules.extend((self.filter == Filter::Pcf).then_some("kernel/box"));
+        modules.extend((self.bias == Bias::Normal).then_some("bias/normal"));
+        modules
     }
 }

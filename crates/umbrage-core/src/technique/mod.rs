@@ -6,7 +6,7 @@
 pub mod choices;
 mod settings;
 
-pub use choices::{Bias, Choice, Combination, Filter, Projection, Storage};
+pub use choices::{Bias, Choice, Combination, Filter, Projection, Steps, Storage};
 pub use settings::{SettingError, Settings};
 
 /// Where an idea was published.

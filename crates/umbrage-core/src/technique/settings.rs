@@ -136,6 +136,17 @@ impl Settings {
         self.value("map_size").map_or(0, |size| size as u32)
     }
 
+    /// How far from the receiver, along either axis of the map, the centre of a texel may lie that counts, texels; 0
+    /// without a map.
+    pub fn reach_texel(&self) -> f32 {
+        self.combination.map_or(0.0, |c| c.reach_texel(self.value("width").unwrap_or(1.0)))
+    }
+
+    /// Lookups of the map for each lit pixel and view: a gather counts once.
+    pub fn taps(&self) -> u32 {
+        self.combination.map_or(0, |c| c.taps(self.value("width").unwrap_or(1.0)))
+    }
+
     fn unknown_key(&self, key: &str) -> SettingError {
         let mut known: Vec<&str> = self.params().map(|p| p.name).collect();
         if self.combination.is_some() {
