@@ -95,6 +95,8 @@ mod tests {
         let typed = "compare a.glb --ground -t hard,linear --set map_size=64 -sbias=none --size 8x8 -o out \
                      --path=frames=2,turn=1 --samples 4 --json --light radius=1";
         assert_eq!(kept(&words(typed)), words("a.glb --ground --size 8x8 --light radius=1"));
+        let typed = "compare a.glb -t hard --time -0.5 --animation Run --techniques=hard";
+        assert_eq!(kept(&words(typed)), words("a.glb --time -0.5 --animation Run"));
     }
 
     #[test]

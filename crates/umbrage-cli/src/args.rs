@@ -68,6 +68,17 @@ pub struct SceneArgs {
     #[arg(default_value = "builtin:torus")]
     pub scene: String,
 
+    /// Show an animated scene as it is after this many seconds; without it the scene is at rest
+    ///
+    /// After its end an animation starts again. A glTF file's first animation plays unless --animation names another.
+    /// What is fitted to the scene is fitted to that moment: give --camera and --light to pictures of a sequence.
+    #[arg(long, value_name = "SECONDS", value_parser = specs::seconds, allow_negative_numbers = true, help_heading = "Scene")]
+    pub time: Option<f32>,
+
+    /// Which of the scene's animations plays, by name or number
+    #[arg(long, value_name = "N", requires = "time", help_heading = "Scene")]
+    pub animation: Option<String>,
+
     /// Lay a matte ground under the scene, for its shadow to fall on
     #[arg(long, help_heading = "Scene")]
     pub ground: bool,
@@ -155,6 +166,8 @@ const RENDER_EXAMPLES: &str = "Examples:
       the built-in scene into umbrage.png
   umbrage render model.glb --ground -o model.png
       your model on a ground, with its own lights, or a light that suits it
+  umbrage render fox.glb --ground --animation Walk --time 0.35
+      a moment of an animation
   umbrage render builtin:torus --technique hard --set map_size=128 -o stairs.png
       what a coarse map without filter looks like
   umbrage render builtin:columns --view depth -o map.png

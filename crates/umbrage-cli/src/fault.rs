@@ -39,6 +39,8 @@ impl From<umbrage_scene::SceneError> for Fault {
         match error {
             // No such built-in scene or parameter: a name that was typed, not a file.
             umbrage_scene::SceneError::Builtin(message) => Self::WrongUse(message),
+            // Likewise an animation that is not in the file.
+            error @ umbrage_scene::SceneError::Pose { .. } => Self::WrongUse(error.to_string()),
             other => Self::Failed(other.to_string()),
         }
     }

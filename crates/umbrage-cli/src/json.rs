@@ -53,6 +53,18 @@ pub struct SceneJson {
     pub lights: usize,
     pub cameras: usize,
     pub bounds: BoundsJson,
+    /// `null` at rest.
+    pub animation: Option<AnimationJson>,
+}
+
+/// The moment of an animation that is shown.
+#[derive(Debug, Serialize)]
+pub struct AnimationJson {
+    pub number: usize,
+    pub name: String,
+    pub length_s: f64,
+    /// Within the length.
+    pub time_s: f64,
 }
 
 /// Metres, world space.
@@ -151,6 +163,12 @@ impl SceneJson {
                 min: bounds.min.to_array().map(decimal),
                 max: bounds.max.to_array().map(decimal),
             },
+            animation: scene.playing.as_ref().map(|playing| AnimationJson {
+                number: playing.number,
+                name: playing.name.clone(),
+                length_s: decimal(playing.length_s),
+                time_s: decimal(playing.time_s),
+            }),
         }
     }
 }

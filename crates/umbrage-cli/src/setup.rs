@@ -10,7 +10,7 @@ use std::time::Instant;
 use umbrage_render::RenderOptions;
 use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_render::umbrage::core::{Camera, Projection};
-use umbrage_scene::{Image, Scene, SceneLight};
+use umbrage_scene::{Image, Playing, Pose, Scene, SceneLight};
 
 /// A scene with all that the command line adds to it.
 #[derive(Debug)]
@@ -45,7 +45,7 @@ pub fn stage(args: &SceneArgs) -> Result<Stage, Fault> {
         .map(|light| light.cookie.as_deref().map(picture).transpose())
         .collect::<Result<Vec<_>, _>>()?;
     let start = Instant::now();
-    let mut scene = umbrage_scene::load(&args.scene)?;
+    let (mut scene, playing) = load(args)?;
     let load_ms = start.elapsed().as_secs_f64() * 1e3;
 
     let bounds = scene.bounds();
@@ -70,6 +70,7 @@ pub fn stage(args: &SceneArgs) -> Result<Stage, Fault> {
     if args.lights_from.is_some() {
         scene.lights = lights;
     }
+    notes.extend(playing);
     notes.extend(umbrage_scene::add_defaults(&mut scene));
     let from_case = args.lights_from.is_some().then_some(camera);
     if from_case.is_some() {
@@ -84,6 +85,17 @@ pub fn stage(args: &SceneArgs) -> Result<Stage, Fault> {
     let light_numbers = keep_lights(&mut scene, &args.lights)?;
     let background = args.background.or(background);
     Ok(Stage { scene, camera, size, background, map_size, light_numbers, notes, load_ms })
+}
+
+/// Loads the scene as the options have it, with a note on what plays.
+fn load(args: &SceneArgs) -> Result<(Scene, Option<String>), Fault> {
+    let Some(time_s) = args.time else { return Ok((umbrage_scene::load(&args.scene)?, None)) };
+    let scene = umbrage_scene::load_at(&args.scene, &Pose { time_s, animation: args.animation.clone() })?;
+    let note = scene.playing.as_ref().map(|playing| {
+        let Playing { number, name, length_s, time_s } = playing;
+        format!("animation {number} `{name}` is shown at {time_s:.3} s of {length_s:.3} s")
+    });
+    Ok((scene, note))
 }
 
 /// Keeps the lights that are named, all when none is. Returns the number that each had.

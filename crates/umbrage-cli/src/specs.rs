@@ -163,6 +163,11 @@ pub fn size(text: &str) -> Result<UVec2, String> {
         .ok_or_else(|| "write width x height in pixels, each 1 or more, for example 1280x720".into())
 }
 
+/// A time, which may be negative.
+pub fn seconds(text: &str) -> Result<f32, String> {
+    number(text).map_err(|_| "it must be a number of seconds, for example 0.5".into())
+}
+
 /// A number from 0 to 1.
 pub fn share(text: &str) -> Result<f32, String> {
     number(text)

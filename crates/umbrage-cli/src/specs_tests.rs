@@ -16,6 +16,10 @@ fn sizes_numbers_and_colours() {
     for bad in ["-0.1", "1.1", "NaN", "inf", "", "half"] {
         assert!(share(bad).is_err(), "{bad}");
     }
+    assert_eq!((seconds("0.5"), seconds("-2")), (Ok(0.5), Ok(-2.0)));
+    for bad in ["", "NaN", "inf", "1e39", "1s", "now"] {
+        assert!(seconds(bad).is_err(), "{bad}");
+    }
     assert_eq!(exposure("auto"), Ok(Exposure::Auto));
     assert_eq!(exposure("2.5"), Ok(Exposure::Factor(2.5)));
     for bad in ["0", "-1", "automatic", "inf", "NaN"] {

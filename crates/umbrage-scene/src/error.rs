@@ -46,6 +46,14 @@ pub enum SceneError {
         /// What was found instead.
         what: String,
     },
+    /// The scene cannot be had in the pose that was asked for: no such animation, or no such time.
+    #[error("{}: {what}", path.display())]
+    Pose {
+        /// Which file, or `builtin:NAME`.
+        path: PathBuf,
+        /// What was asked for, and what there is.
+        what: String,
+    },
     /// `builtin:NAME` with a name or parameter that does not exist.
     #[error("{0}")]
     Builtin(String),

@@ -1,6 +1,7 @@
 //! Scenes for Umbrage: glTF 2.0, Wavefront OBJ, and built-in ones made from a seed.
 //!
 //! [`load`] takes what a user types (a path or `builtin:NAME`) and gives a [`Scene`]: flat lists, world space, no GPU.
+//! [`load_at`] gives a moment of one of its animations.
 
 mod builtin;
 mod check;
@@ -11,6 +12,7 @@ mod flat;
 mod gltf;
 mod normals;
 mod obj;
+mod pose;
 pub mod scene;
 mod tangents;
 
@@ -19,13 +21,36 @@ pub use closed::is_closed;
 pub use defaults::{add_defaults, add_ground};
 pub use error::SceneError;
 pub use flat::plane_of;
+pub use pose::Pose;
 pub use scene::*;
 
-/// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file.
+/// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file. Animated files are at rest.
 ///
 /// # Errors
 /// One line that names the file, the reason and the way out. Whatever the bytes are, this returns.
 pub fn load(spec: &str) -> Result<Scene, SceneError> {
+    read(spec, None)
+}
+
+/// As [`load`], at a moment of an animation: nodes with their lights and cameras, joints and morph weights are where
+/// its channels put them (`LINEAR`, `STEP` and `CUBICSPLINE`), all else is at rest. [`Scene::playing`] says what was
+/// found. A scene without animations is at rest, with a warning.
+///
+/// Everything is read anew; the cost is that of [`load`].
+///
+/// # Errors
+/// As [`load`]; [`SceneError::Pose`] where there is no such animation or the time is not finite, and
+/// [`SceneError::Malformed`] where the animation cannot be played.
+pub fn load_at(spec: &str, pose: &Pose) -> Result<Scene, SceneError> {
+    pose.check(spec)?;
+    let mut scene = read(spec, Some(pose))?;
+    if scene.playing.is_none() {
+        pose.without_animations(spec, &mut scene)?;
+    }
+    Ok(scene)
+}
+
+fn read(spec: &str, pose: Option<&Pose>) -> Result<Scene, SceneError> {
     if let Some(name) = spec.strip_prefix("builtin:") {
         return builtin::build(name);
     }
@@ -42,7 +67,7 @@ pub fn load(spec: &str) -> Result<Scene, SceneError> {
     }
     let read = || std::fs::read(path).map_err(|e| SceneError::read(path, &e));
     let scene = match ending.as_str() {
-        "gltf" | "glb" => gltf::load(path, &read()?)?,
+        "gltf" | "glb" => gltf::load(path, &read()?, pose)?,
         "obj" => {
             let mut scene = obj::load(path, &read()?)?;
             let uv_set =

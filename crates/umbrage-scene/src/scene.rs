@@ -20,8 +20,23 @@ pub struct Scene {
     pub lights: Vec<SceneLight>,
     /// Cameras in world space.
     pub cameras: Vec<SceneCamera>,
+    /// The moment of an animation that all of this is; `None` at rest.
+    pub playing: Option<Playing>,
     /// What the file asks for and did not get, one clause each, for the user's eye.
     pub warnings: Vec<String>,
+}
+
+/// A moment of an animation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playing {
+    /// Place among the file's animations, from 0.
+    pub number: usize,
+    /// What the file calls it; may be empty.
+    pub name: String,
+    /// Time of its last key, seconds, 0 or more.
+    pub length_s: f32,
+    /// Seconds from its beginning, 0 to `length_s`: the time that was asked for, less whole lengths.
+    pub time_s: f32,
 }
 
 /// Triangles with one material, in object space.

@@ -4,10 +4,10 @@
 
 mod common;
 
-use common::glb::{F32, Glb, Random, U8, f32s, load};
+use common::glb::{F32, Glb, Random, U8, f32s, load, load_at};
 use common::{assert_sound, shared};
 use serde_json::{Value, json};
-use umbrage_scene::{Scene, SceneError};
+use umbrage_scene::{Pose, Scene, SceneError};
 
 fn one_line(outcome: &Result<Scene, SceneError>, what: &str) {
     match outcome {
@@ -207,6 +207,18 @@ fn rich() -> Glb {
         json!([{"mesh": 0, "skin": 0, "children": [1, 2]}, {"name": "joint"}, {"mesh": 0, "camera": 0}]);
     glb.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]);
     glb.json["skins"] = json!([{"joints": [1]}]);
+    let turns = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3], [0.0; 3], [0.0, 1.0, 0.0], [0.0; 3]].concat();
+    let turns = glb.accessor(&f32s(&turns), F32, "VEC3", 6, false);
+    glb.animate(1, "translation", "CUBICSPLINE", &[0.0, 1.0], turns);
+    let weights = glb.accessor(&f32s(&[0.0, 1.0]), F32, "SCALAR", 2, false);
+    let number = glb.animate(0, "weights", "LINEAR", &[0.0, 1.0], weights);
+    let more = glb.json["animations"][number].clone();
+    let first = &mut glb.json["animations"][0];
+    first["samplers"].as_array_mut().unwrap().push(more["samplers"][0].clone());
+    first["channels"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"sampler": 1, "target": more["channels"][0]["target"]}));
     let vertices: Vec<[f32; 3]> = (0..4).map(|i| [i as f32, 0.0, 0.0]).collect();
     let coded = meshopt::encode_vertex_buffer(&vertices).unwrap();
     let view = glb.view(&coded);
@@ -244,12 +256,18 @@ fn damaged(good: &[u8], random: &mut Random) -> Vec<u8> {
 fn two_thousand_corruptions_of_a_good_file_are_answered() {
     let good = rich();
     assert_sound(&good.load().unwrap());
+    assert_sound(&good.load_at(0.5).unwrap());
     let good = good.bytes();
     let start = std::time::Instant::now();
     let mut random = Random(0x5EED);
     let mut loaded = 0;
     for round in 0..2000 {
-        let outcome = load(&damaged(&good, &mut random), "glb");
+        // Half of them at a moment of their animation.
+        let bytes = damaged(&good, &mut random);
+        let outcome = match round % 2 {
+            0 => load(&bytes, "glb"),
+            _ => load_at(&bytes, "glb", &Pose { time_s: 0.5, animation: None }),
+        };
         one_line(&outcome, &format!("round {round}"));
         loaded += usize::from(outcome.is_ok());
     }

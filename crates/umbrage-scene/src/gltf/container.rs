@@ -21,19 +21,31 @@ struct ProbeAsset {
     min_version: Option<serde_json::Value>,
 }
 
-/// The document and, for a GLB, its binary chunk. Text and binary are told apart by content, not by ending.
-pub(super) fn open(bytes: &[u8]) -> Result<(json::Root, Option<&[u8]>), String> {
+/// What a file holds.
+#[derive(Debug)]
+pub(super) struct Container<'a> {
+    /// The parsed document. What it says of animations may be missing; the text has it.
+    pub(super) root: json::Root,
+    /// The document's JSON.
+    pub(super) text: &'a [u8],
+    /// The binary chunk of a GLB.
+    pub(super) bin: Option<&'a [u8]>,
+}
+
+/// Takes a file apart. Text and binary are told apart by content, not by ending.
+pub(super) fn open(bytes: &[u8]) -> Result<Container<'_>, String> {
     if bytes.is_empty() {
         return Err("the file is empty; export it again".into());
     }
     if bytes.starts_with(MAGIC) {
         let (text, bin) = chunks(bytes)?;
-        return Ok((parse(text, "the JSON chunk: ")?, bin));
+        let text = text.strip_prefix(BOM).unwrap_or(text);
+        return Ok(Container { root: parse(text, "the JSON chunk: ")?, text, bin });
     }
     // A byte order mark is against the specification, yet harmless and common among hand-edited files.
     let text = bytes.strip_prefix(BOM).unwrap_or(bytes);
     match text.iter().find(|byte| !byte.is_ascii_whitespace()) {
-        Some(b'{') => Ok((parse(text, "")?, None)),
+        Some(b'{') => Ok(Container { root: parse(text, "")?, text, bin: None }),
         _ => Err("neither glTF (JSON text) nor GLB (it would start with \"glTF\"); check the file".into()),
     }
 }
@@ -92,7 +104,6 @@ fn truncated(have: usize, need: usize) -> String {
 }
 
 fn parse(text: &[u8], place: &str) -> Result<json::Root, String> {
-    let text = text.strip_prefix(BOM).unwrap_or(text);
     if text.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0) {
         return Err(format!("{place}there is no JSON in it; export the file again"));
     }
@@ -107,8 +118,9 @@ fn parse(text: &[u8], place: &str) -> Result<json::Root, String> {
     serde_json::from_slice(text).or_else(|e| without_animations(text).ok_or_else(|| broken(e)))
 }
 
-/// Animations are not played, so nothing in them may stop a file from being shown; the parser is stricter with them
-/// than the specification is (`KHR_animation_pointer` aims at no node).
+/// Nothing in an animation that does not play may stop a file from being shown, and the parser is stricter with them
+/// than the specification is (`KHR_animation_pointer` aims at no node). The one that plays is read by
+/// [`super::animation`].
 fn without_animations(text: &[u8]) -> Option<json::Root> {
     let mut document: serde_json::Value = serde_json::from_slice(text).ok()?;
     document.as_object_mut()?.remove("animations")?;
@@ -153,8 +165,8 @@ mod tests {
     #[test]
     fn a_glb_gives_its_chunks() {
         let file = glb(&[(CHUNK_JSON, TEXT), (CHUNK_BIN, b"abcd"), (7, b"more")]);
-        let (root, bin) = open(&file).unwrap();
-        assert_eq!(root.asset.version, "2.0");
+        let Container { root, text, bin } = open(&file).unwrap();
+        assert_eq!((root.asset.version.as_str(), text), ("2.0", TEXT));
         assert_eq!(bin, Some(&b"abcd"[..]));
     }
 

@@ -37,7 +37,7 @@ const MEANINGS: &[(&str, &str)] = &[
     ("KHR_materials_variants", "the default variant is shown"),
     ("KHR_texture_basisu", "its textures are left out unless the file has a PNG or JPEG beside them"),
     ("MSFT_texture_dds", "its textures are left out unless the file has a PNG or JPEG beside them"),
-    ("KHR_animation_pointer", "such animations do not play"),
+    ("KHR_animation_pointer", "what only it moves is at rest"),
     ("EXT_lights_image_based", "the light of its surroundings is left out"),
     ("MSFT_lod", "the finest level of detail is drawn"),
 ];
@@ -59,11 +59,14 @@ pub(super) fn check(root: &json::Root, warnings: &mut Vec<String>) -> Result<(),
     let mut used: Vec<&str> = root.extensions_used.iter().filter(unknown).map(String::as_str).collect();
     used.sort_unstable();
     used.dedup();
-    for name in used {
-        let meaning = MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning);
-        warnings.push(format!("{name} is not supported: {}", meaning.unwrap_or("it is passed over")));
-    }
+    warnings.extend(used.into_iter().map(meaning));
     Ok(())
+}
+
+/// The warning of an extension that is passed over.
+pub(super) fn meaning(name: &str) -> String {
+    let meaning = MEANINGS.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning);
+    format!("{name} is not supported: {}", meaning.unwrap_or("it is passed over"))
 }
 
 /// Does the file say that it uses an extension?

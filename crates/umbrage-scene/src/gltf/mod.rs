@@ -1,9 +1,10 @@
 //! glTF 2.0 and GLB.
 //!
-//! The order below is the order of the work: container, extensions, references, bytes, node tree, meshes, materials,
-//! pictures. Everything that can be wrong with a reference is settled before the first byte of geometry is read.
+//! The order below is the order of the work: container, extensions, references, bytes, animation, node tree, meshes,
+//! materials, pictures. Everything that can be wrong with a reference is settled before the first byte of geometry is read.
 
 mod accessors;
+mod animation;
 mod assemble;
 mod buffers;
 mod cameras;
@@ -20,18 +21,20 @@ mod meshopt;
 mod morph;
 mod nodes;
 mod references;
+mod sampler;
 mod skin;
 mod uri;
 
-use crate::{Scene, SceneError};
+use crate::{Pose, Scene, SceneError};
 use std::path::Path;
 
-/// Loads a `.gltf` or `.glb` file whose bytes are `bytes`; `path` is where its companions lie.
+/// Loads a `.gltf` or `.glb` file whose bytes are `bytes`; `path` is where its companions lie. Without a pose it is at
+/// rest.
 ///
 /// The result still has to pass [`crate::check::check`].
-pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
+pub(crate) fn load(path: &Path, bytes: &[u8], pose: Option<&Pose>) -> Result<Scene, SceneError> {
     let malformed = |what: String| SceneError::malformed(path, document::one_line(&what));
-    let (root, bin) = container::open(bytes).map_err(malformed)?;
+    let container::Container { root, text, bin } = container::open(bytes).map_err(malformed)?;
     let mut warnings = Vec::new();
     extensions::check(&root, &mut warnings)
         .map_err(|what| SceneError::Unsupported { path: path.to_owned(), what: document::one_line(&what) })?;
@@ -39,7 +42,19 @@ pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
     let mut document = document::Document::open(path, root, bin)?;
     meshopt::decompress(&mut document).map_err(malformed)?;
     draco::decompress(&mut document).map_err(malformed)?;
+    let mut playing = None;
+    if let Some(pose) = pose {
+        let animations = animation::Animations::of(text).map_err(malformed)?;
+        let chosen = animations
+            .choose(pose.animation.as_deref())
+            .map_err(|what| SceneError::Pose { path: path.to_owned(), what: document::one_line(&what) })?;
+        if let Some(number) = chosen {
+            let moment = animations.play(&mut document, number, pose, &mut warnings).map_err(malformed)?;
+            playing = Some(moment);
+        }
+    }
     let mut scene = assemble::scene(&document, &mut warnings).map_err(malformed)?;
+    scene.playing = playing;
     scene.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     scene.warnings = for_the_eye(&warnings);
     Ok(scene)

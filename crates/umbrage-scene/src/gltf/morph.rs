@@ -1,4 +1,4 @@
-//! Morph targets at rest: the mesh with its default weights.
+//! Morph targets: the mesh with the weights that it has at rest, or that an animation gives it.
 
 use super::document::Document;
 use super::geometry::Geometry;

@@ -1,6 +1,6 @@
 //! Every index in the document points at something. Checked once, so that later steps may simply index.
 //!
-//! Animations are not played and therefore not looked at.
+//! Animations are not looked at: the one that plays, if any does, is checked where it is read.
 
 use super::document::label;
 use gltf::json;

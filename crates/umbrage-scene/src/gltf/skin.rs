@@ -1,4 +1,4 @@
-//! Skins at rest: vertices moved by the joints' poses as the nodes hold them.
+//! Skins: vertices moved by the joints' poses as the nodes hold them, at rest or at a moment of an animation.
 
 use super::document::{Document, label};
 use super::geometry::Geometry;

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use umbrage_scene::{Scene, SceneError};
+use umbrage_scene::{Pose, Scene, SceneError};
 
 pub const I8: u32 = 5120;
 pub const U8: u32 = 5121;
@@ -115,6 +115,21 @@ impl Glb {
     pub fn load(&self) -> Result<Scene, SceneError> {
         load(&self.bytes(), "glb")
     }
+
+    /// At a time of the first animation.
+    pub fn load_at(&self, time_s: f32) -> Result<Scene, SceneError> {
+        load_at(&self.bytes(), "glb", &Pose { time_s, animation: None })
+    }
+
+    /// An animation of one channel, its keys at `times`; its values are an accessor.
+    pub fn animate(&mut self, node: usize, path: &str, how: &str, times: &[f32], values: usize) -> usize {
+        let input = self.accessor(&f32s(times), F32, "SCALAR", times.len(), false);
+        self.push(
+            "animations",
+            json!({"channels": [{"sampler": 0, "target": {"node": node, "path": path}}],
+                   "samplers": [{"input": input, "output": values, "interpolation": how}]}),
+        )
+    }
 }
 
 /// A path that no other test uses.
@@ -126,9 +141,22 @@ pub fn temporary(ending: &str) -> PathBuf {
 
 /// Loads bytes by way of a file.
 pub fn load(bytes: &[u8], ending: &str) -> Result<Scene, SceneError> {
+    by_file(bytes, ending, umbrage_scene::load)
+}
+
+/// Loads bytes by way of a file, in a pose.
+pub fn load_at(bytes: &[u8], ending: &str, pose: &Pose) -> Result<Scene, SceneError> {
+    by_file(bytes, ending, |path| umbrage_scene::load_at(path, pose))
+}
+
+fn by_file(
+    bytes: &[u8],
+    ending: &str,
+    load: impl Fn(&str) -> Result<Scene, SceneError>,
+) -> Result<Scene, SceneError> {
     let path = temporary(ending);
     std::fs::write(&path, bytes).unwrap();
-    let outcome = umbrage_scene::load(&path.to_string_lossy());
+    let outcome = load(&path.to_string_lossy());
     std::fs::remove_file(&path).unwrap();
     outcome
 }
