@@ -30,18 +30,15 @@ pub struct GpuView {
     /// Share of the distance from near to far.
     pub step_share: f32,
     /// Texels.
-    pub reach_texel: f32,
-    /// Texels.
     pub width_texel: f32,
-    /// What the bias makes of it.
-    pub constant: f32,
-    /// World space.
-    pub origin: Vec3,
+    /// Texels.
+    pub margin_texel: f32,
     /// Texels.
     pub normal_texel: f32,
-    pub cone: f32,
-    pub anchor: f32,
-    pub pad: [f32; 2],
+    /// World space.
+    pub origin: Vec3,
+    /// Nothing.
+    pub pad: f32,
 }
 
 impl GpuView {
@@ -60,14 +57,11 @@ impl GpuView {
             step_depth: steps.depth,
             step_relative: steps.relative,
             step_share: steps.share,
-            reach_texel: settings.reach_texel(),
             width_texel: settings.value("width").unwrap_or(1.0),
-            constant: settings.value("plane_margin").unwrap_or(0.0),
+            margin_texel: settings.value("plane_margin").unwrap_or(0.0),
             normal_texel: settings.value("normal_offset").unwrap_or(0.0),
             origin: view.light_from_world.inverse().w_axis.truncate(),
-            cone: settings.value("cone").unwrap_or(0.0),
-            anchor: settings.value("anchor").unwrap_or(0.0),
-            pad: [0.0; 2],
+            pad: 0.0,
         }
     }
 }
@@ -104,15 +98,11 @@ mod tests {
             ("step_depth", offset_of!(GpuView, step_depth)),
             ("step_relative", offset_of!(GpuView, step_relative)),
             ("step_share", offset_of!(GpuView, step_share)),
-            ("reach_texel", offset_of!(GpuView, reach_texel)),
             ("width_texel", offset_of!(GpuView, width_texel)),
-            ("constant", offset_of!(GpuView, constant)),
-            ("origin", offset_of!(GpuView, origin)),
+            ("margin_texel", offset_of!(GpuView, margin_texel)),
             ("normal_texel", offset_of!(GpuView, normal_texel)),
-            ("cone", offset_of!(GpuView, cone)),
-            ("anchor", offset_of!(GpuView, anchor)),
-            ("pad_0", offset_of!(GpuView, pad)),
-            ("pad_1", offset_of!(GpuView, pad) + 4),
+            ("origin", offset_of!(GpuView, origin)),
+            ("pad", offset_of!(GpuView, pad)),
         ];
         assert_eq!(shader, mirror);
         assert_eq!(span as usize, size_of::<GpuView>());

@@ -108,7 +108,10 @@ pub fn lookup_bias_depth(settings: &Settings) -> f32 {
 fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
     match bias {
         Bias::None | Bias::Matrix | Bias::ReceiverPlane => PolygonOffset::default(),
-        Bias::Constant | Bias::Slope | Bias::Normal | Bias::Auto => PolygonOffset {
+        // Every caster is carried on by 3/4 of a texel along both axes (`UMBRAGE_NEAR`), and the rasteriser's slope is the larger
+        // of the two.
+        Bias::Auto => PolygonOffset { constant: 0, slope: DEPTH.away() * 1.5 },
+        Bias::Constant | Bias::Slope | Bias::Normal => PolygonOffset {
             constant: (DEPTH.away() * settings.value("constant").unwrap_or(0.0)) as i32,
             slope: DEPTH.away() * settings.value("slope_factor").unwrap_or(0.0),
         },

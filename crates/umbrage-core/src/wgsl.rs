@@ -26,7 +26,8 @@ impl Module {
 
 /// What can be done in several ways, one of them in each shader: all modules of a slot define the same functions. With each
 /// slot, the module that fills it when none is named.
-pub const SLOTS: &[(&str, &str)] = &[("map", "map/depth"), ("compare", "compare/auto"), ("kernel", "kernel/bell")];
+pub const SLOTS: &[(&str, &str)] =
+    &[("map", "map/depth"), ("compare", "compare/auto"), ("kernel", "kernel/bell")];
 
 macro_rules! module {
     ($name:literal, $summary:literal, [$($need:literal),*]) => {
@@ -66,7 +67,11 @@ pub const MODULES: &[Module] = &[
     module!("filter/nearest", "one comparison with the texel that holds the receiver", ["map", "compare"]),
     module!("filter/linear", "2x2 comparisons, blended", ["map", "compare"]),
     module!("filter/linear_hardware", "2x2 comparisons with one depth, blended by the hardware", ["locate"]),
-    module!("filter/kernel", "comparisons with all texels that a kernel reaches, blended", ["map", "compare", "kernel"]),
+    module!(
+        "filter/kernel",
+        "comparisons with all texels that a kernel reaches, blended",
+        ["map", "compare", "kernel"]
+    ),
 ];
 
 /// A name that is no module.
@@ -97,7 +102,8 @@ pub fn assemble_with(names: &[&str], own: &[(&str, &str)]) -> Result<String, Unk
     let mut open: Vec<&str> = names.to_vec();
     let filler = |name: &str| {
         let (_, default) = SLOTS.iter().find(|(slot, _)| *slot == name)?;
-        let named = names.iter().find(|named| named.strip_prefix(name).is_some_and(|rest| rest.starts_with('/')));
+        let named =
+            names.iter().find(|named| named.strip_prefix(name).is_some_and(|rest| rest.starts_with('/')));
         Some(named.copied().unwrap_or(default))
     };
     while let Some(name) = open.pop() {

@@ -19,19 +19,15 @@ struct UmbrageView {
     step_depth: f32,
     step_relative: f32,
     step_share: f32,
-    // Widest reach of the filter along an axis, texels.
-    reach_texel: f32,
-    // What the filter's parameters say, texels.
+    // Width of the filter, texels.
     width_texel: f32,
-    // What the bias's parameters say.
-    constant: f32,
+    // Margin of the receiver's plane, widths of a texel (see `compare/plane`).
+    margin_texel: f32,
+    // How far a receiver is moved along its normal, widths of a texel (see `bias/normal`).
+    normal_texel: f32,
     // Where the light is; of no use for parallel light.
     origin: vec3f,
-    normal_texel: f32,
-    cone: f32,
-    anchor: f32,
-    pad_0: f32,
-    pad_1: f32,
+    pad: f32,
 }
 
 // Which way stored depth grows: 1 away from the light, -1 towards it (reversed). `umbrage_core::DEPTH` says the same, and

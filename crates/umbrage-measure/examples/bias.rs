@@ -14,7 +14,9 @@ fn main() {
     let heat = std::env::var("HEAT").ok();
     for scene_name in args[0].split(',') {
         let mut scene = umbrage_scene::load(scene_name).expect("scene");
-        if !scene_name.starts_with("builtin") { umbrage_scene::add_ground(&mut scene); }
+        if !scene_name.starts_with("builtin") {
+            umbrage_scene::add_ground(&mut scene);
+        }
         umbrage_scene::add_defaults(&mut scene);
         scene.lights.truncate(1);
         for kind in args[2].split(',') {
@@ -23,7 +25,15 @@ fn main() {
             let bounds = scene.bounds();
             match kind {
                 "point" => scene.lights[0].light = Light { kind: LightKind::Point, ..light },
-                "sun" => scene.lights[0].light = Light { kind: LightKind::Directional, intensity: 3.0, near_m: None, far_m: None, ..light },
+                "sun" => {
+                    scene.lights[0].light = Light {
+                        kind: LightKind::Directional,
+                        intensity: 3.0,
+                        near_m: None,
+                        far_m: None,
+                        ..light
+                    }
+                }
                 _ => {}
             }
             let mut techniques = Vec::new();
@@ -31,7 +41,12 @@ fn main() {
             for size in args[1].split(',') {
                 for spec in &args[3..] {
                     let (technique, pairs) = spec.split_once(':').unwrap_or((spec, ""));
-                    let pairs: Vec<(&str, &str)> = pairs.split(',').filter(|p| !p.is_empty()).map(|p| p.split_once('=').expect("k=v")).chain([("map_size", size)]).collect();
+                    let pairs: Vec<(&str, &str)> = pairs
+                        .split(',')
+                        .filter(|p| !p.is_empty())
+                        .map(|p| p.split_once('=').expect("k=v"))
+                        .chain([("map_size", size)])
+                        .collect();
                     techniques.push(Settings::new(technique, pairs).expect("settings"));
                     labels.push((size.to_owned(), spec.clone()));
                 }
@@ -42,24 +57,51 @@ fn main() {
                 light_numbers: vec![0],
                 quality: Quality { samples: 32, seed: 0 },
                 frames: 0,
-                options: RenderOptions { size: UVec2::new(side * 16 / 9, side), ..RenderOptions::new(techniques[0].clone()) },
+                options: RenderOptions {
+                    size: UVec2::new(side * 16 / 9, side),
+                    ..RenderOptions::new(techniques[0].clone())
+                },
                 techniques,
             };
-            let found = match compare(&gpu, &scene, &plan, &|_: &str, _| ControlFlow::Continue(())) { Ok(f) => f, Err(e) => { println!("{scene_name} {kind}: {e}"); continue } };
+            let found = match compare(&gpu, &scene, &plan, &|_: &str, _| ControlFlow::Continue(())) {
+                Ok(f) => f,
+                Err(e) => {
+                    println!("{scene_name} {kind}: {e}");
+                    continue;
+                }
+            };
             let receivers = found.views[0].receivers as f64;
             for (row, (size, spec)) in found.rows.iter().zip(&labels) {
                 let sure = (1.0 - row.errors.band) * receivers;
-                let distance = match kind { "sun" => 1.0, _ => light.position_world.distance(bounds.center()) };
+                let distance = match kind {
+                    "sun" => 1.0,
+                    _ => light.position_world.distance(bounds.center()),
+                };
                 let width = match (kind, light.kind) {
                     ("point", _) => 2.0,
                     (_, LightKind::Spot { outer_rad, .. }) => 2.0 * outer_rad.tan(),
                     _ => 2.0 * bounds.radius(),
                 };
                 let texel = width * distance / size.parse::<f32>().unwrap();
-                println!("{:28} {kind:5} {size:>5} {spec:50} acne {:5.0} leak {:5.0} /{:7.0} leak% {:.4} gap {:5.2} tx edge {:.4} band {:4.1}% rmse {:.4}",
-                    scene_name.rsplit('/').next().unwrap(), row.errors.acne * sure, row.errors.leak * sure, sure, 100.0 * row.errors.leak, row.gap_m.unwrap_or(0.0) / f64::from(texel), row.errors.edge, 100.0 * row.errors.band, row.errors.rmse);
+                println!(
+                    "{:28} {kind:5} {size:>5} {spec:50} acne {:5.0} leak {:5.0} /{:7.0} leak% {:.4} gap {:5.2} tx edge {:.4} band {:4.1}% rmse {:.4} hidden {}",
+                    scene_name.rsplit('/').next().unwrap(),
+                    row.errors.acne * sure,
+                    row.errors.leak * sure,
+                    sure,
+                    100.0 * row.errors.leak,
+                    row.gap_m.unwrap_or(0.0) / f64::from(texel),
+                    row.errors.edge,
+                    100.0 * row.errors.band,
+                    row.errors.rmse,
+                    row.errors.hidden_pixels
+                );
                 if let Some(folder) = &heat {
-                    let safe: String = format!("{}-{kind}-{size}-{spec}", scene_name.rsplit('/').next().unwrap()).chars().map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' }).collect();
+                    let safe: String =
+                        format!("{}-{kind}-{size}-{spec}", scene_name.rsplit('/').next().unwrap())
+                            .chars()
+                            .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
+                            .collect();
                     std::fs::write(format!("{folder}/{safe}.png"), &row.pictures[2]).unwrap();
                 }
             }

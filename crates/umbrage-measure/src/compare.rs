@@ -3,7 +3,7 @@
 use crate::cost::Cost;
 use crate::heat::{heat, picture_of_v};
 use crate::numbers::params;
-use crate::reach::reach_px;
+use crate::reach::Reach;
 use crate::view::{TruthSummary, ViewSummary, ViewTruth, name_of};
 use crate::{MeasureError, Progress};
 use glam::Vec3;
@@ -194,6 +194,7 @@ fn measure_group(
     progress: &Progress<'_>,
 ) -> Result<(), MeasureError> {
     let shown = cameras.len() / 2;
+    let light = &alone.lights[0].light;
     let mut running: Vec<Running> = plan.techniques.iter().map(|_| Running::default()).collect();
     let mut last: Option<ViewTruth> = None;
     for (frame, camera) in cameras.iter().enumerate() {
@@ -211,18 +212,7 @@ fn measure_group(
             let label = format!("measuring {}", settings.technique.id);
             progress_to(progress, &label, (done + 1 + i) as f32)?;
             let v = scene.visibility(settings, &mut made.warnings)?;
-            let (errors, shape) = truth.judge(&v.v, &v.reach_px(&truth, settings));
-            if std::env::var("BAD").is_ok() { // DEBUG
-                let reach = v.reach_px(&truth, settings);
-                for (i, r) in reach.iter().enumerate() {
-                    if !truth.judged.is_sure(i, *r) { continue; }
-                    let t = truth.judged.truth()[i].x;
-                    if (t >= 1.0 && v.v[i].x < 0.95) || (t <= 0.0 && v.v[i].x > 0.05) {
-                        let s = truth.surfaces.seen[i].as_ref();
-                        println!("  x {} y {} V* {t} V {:.3} reach {r:.1} p {:?} n {:?} slot {:?}", i as u32 % truth.size().x, i as u32 / truth.size().x, v.v[i].x, s.map(|s| s.p_world), s.map(|s| s.normal_world), s.map(|s| s.slot));
-                    }
-                }
-            }
+            let (errors, shape) = truth.judge(rays, light, &v.v, &v.reach(settings));
             let so_far = &mut running[i];
             so_far.errors.push(errors);
             so_far.gaps_m.extend(shape.gap_m);
@@ -282,8 +272,8 @@ struct Answer {
 }
 
 impl Answer {
-    fn reach_px(&self, truth: &ViewTruth, settings: &Settings) -> Vec<f32> {
-        reach_px(&truth.surfaces, &self.views, settings.map_size_texel(), settings.reach_texel())
+    fn reach(&self, settings: &Settings) -> Reach {
+        Reach::new(&self.views, settings.map_size_texel(), settings.reach_texel())
     }
 }
 

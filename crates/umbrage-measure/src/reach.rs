@@ -5,46 +5,61 @@ use umbrage_render::umbrage::core::DEPTH;
 use umbrage_render::umbrage::core::fit::ShadowView;
 use umbrage_truth::{LEAST_REACH_PX, Seen, Surfaces};
 
-/// Reach of every pixel, pixels: two, or as many as the filter's radius and one texel more are long on the screen, where
-/// the texel's shadow on the surface is seen at its longest. `filter_texel` is the filter's radius. Infinite where the
-/// surface is edge-on to the light. Without a map there is nothing that a texel hides. Of several views, that one counts in
-/// whose middle a surface lies: the tile of a point light.
-pub fn reach_px(
-    surfaces: &Surfaces,
-    views: &[ShadowView],
-    size_texel: u32,
-    filter_texel: f32,
-) -> Vec<f32> {
-    if views.is_empty() {
-        return vec![LEAST_REACH_PX; surfaces.len()];
+/// How far a technique reaches around each surface.
+#[derive(Debug)]
+pub struct Reach {
+    maps: Vec<Lookup>,
+    /// The filter's radius and one texel more.
+    texels: f64,
+}
+
+impl Reach {
+    /// Of maps of `size_texel` drawn in `views`, with a filter of radius `filter_texel`. Of several views, that one counts in
+    /// whose middle a surface lies: the tile of a point light. Without a map there is nothing that a texel hides.
+    pub fn new(views: &[ShadowView], size_texel: u32, filter_texel: f32) -> Self {
+        let map = |view: &ShadowView| Lookup {
+            clip_from_world: view.clip_from_world().as_dmat4(),
+            size: DVec2::splat(f64::from(size_texel)),
+        };
+        Self { maps: views.iter().map(map).collect(), texels: f64::from(filter_texel) + 1.0 }
     }
-    let aspect = surfaces.size.x as f32 / surfaces.size.y as f32;
-    let camera = &surfaces.camera;
-    let clip_from_world = camera.clip_from_view(aspect, DEPTH) * camera.view_from_world();
-    let picture = Lookup { clip_from_world: clip_from_world.as_dmat4(), size: surfaces.size.as_dvec2() };
-    let map = |view: &ShadowView| Lookup {
-        clip_from_world: view.clip_from_world().as_dmat4(),
-        size: DVec2::splat(f64::from(size_texel)),
-    };
-    let maps: Vec<Lookup> = views.iter().map(map).collect();
-    let off_middle = |map: &&Lookup, p_world: DVec3| {
-        let clip = map.clip_from_world * p_world.extend(1.0);
-        if clip.w > 0.0 { (clip.x / clip.w).abs().max((clip.y / clip.w).abs()) } else { f64::INFINITY }
-    };
-    let map_of = |p_world: DVec3| {
-        maps.iter().min_by(|a, b| off_middle(a, p_world).total_cmp(&off_middle(b, p_world))).unwrap_or(&maps[0])
-    };
-    let texels = f64::from(filter_texel) + 1.0;
-    let reach = |seen: &Option<Seen>| {
-        seen.as_ref().map_or(LEAST_REACH_PX, |seen| {
-            let px_per_texel = px_per_texel(&picture, map_of(seen.p_world), seen.p_world, seen.normal_world.as_dvec3());
-            ((texels * px_per_texel) as f32).max(LEAST_REACH_PX)
-        })
-    };
-    surfaces.seen.iter().map(reach).collect()
+
+    fn map_of(&self, p_world: DVec3) -> Option<&Lookup> {
+        let off_middle = |map: &Lookup| {
+            let clip = map.clip_from_world * p_world.extend(1.0);
+            if clip.w > 0.0 { (clip.x / clip.w).abs().max((clip.y / clip.w).abs()) } else { f64::INFINITY }
+        };
+        self.maps.iter().min_by(|a, b| off_middle(a).total_cmp(&off_middle(b)))
+    }
+
+    /// Reach of every pixel, pixels: two, or as many as the reach's texels are long on the screen, where a texel's shadow on
+    /// the surface is seen at its longest. Infinite where the surface is edge-on to the light.
+    pub fn px(&self, surfaces: &Surfaces) -> Vec<f32> {
+        let aspect = surfaces.size.x as f32 / surfaces.size.y as f32;
+        let camera = &surfaces.camera;
+        let clip_from_world = camera.clip_from_view(aspect, DEPTH) * camera.view_from_world();
+        let picture = Lookup { clip_from_world: clip_from_world.as_dmat4(), size: surfaces.size.as_dvec2() };
+        let reach = |seen: &Option<Seen>| {
+            let Some(seen) = seen else { return LEAST_REACH_PX };
+            let Some(map) = self.map_of(seen.p_world) else { return LEAST_REACH_PX };
+            let px_per_texel = px_per_texel(&picture, map, seen.p_world, seen.normal_world.as_dvec3());
+            ((self.texels * px_per_texel) as f32).max(LEAST_REACH_PX)
+        };
+        surfaces.seen.iter().map(reach).collect()
+    }
+
+    /// The reach around a surface, across the ray of light `way`, metres; 0 without a map.
+    pub fn across_light_m(&self, p_world: DVec3, way: DVec3) -> f64 {
+        let Some(map) = self.map_of(p_world) else { return 0.0 };
+        let (right, up) = way.any_orthonormal_pair();
+        let m_from_texel = DMat2::from_cols(map.step(p_world, right), map.step(p_world, up)).inverse();
+        let length = self.texels * greatest_stretch(m_from_texel);
+        if length.is_finite() { length } else { 0.0 }
+    }
 }
 
 /// A projection onto something that has pixels or texels.
+#[derive(Debug)]
 struct Lookup {
     clip_from_world: DMat4,
     size: DVec2,
@@ -95,8 +110,9 @@ mod tests {
         let toward = Vec3::new(elevation_rad.cos(), elevation_rad.sin(), 0.0);
         let sun = Light { kind: LightKind::Directional, ..Light::default() }.aimed(toward * 30.0, Vec3::ZERO);
         let bounds = [Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) }];
-        let view = fit(&sun, &bounds, &FitOptions { size_texel: 4, least_near: 1e-4, border_texel: 0.0 }).expect("a view");
-        (reach_px(&surfaces, &[view], 4, filter_texel)[0], view.texel_m)
+        let view = fit(&sun, &bounds, &FitOptions { size_texel: 4, least_near: 1e-4, border_texel: 0.0 })
+            .expect("a view");
+        (Reach::new(&[view], 4, filter_texel).px(&surfaces)[0], view.texel_m)
     }
 
     #[test]

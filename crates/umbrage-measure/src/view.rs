@@ -1,7 +1,9 @@
 //! The truth of one light from one camera, ready to judge what techniques draw.
 
+use crate::reach::Reach;
 use crate::{MeasureError, Progress};
 use glam::{UVec2, Vec3};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
 use umbrage_render::umbrage::core::technique::Settings;
@@ -9,7 +11,8 @@ use umbrage_render::umbrage::core::{Camera, Light};
 use umbrage_render::{DrawnSurface, Gpu, Measure, RenderOptions, Renderer, View};
 use umbrage_scene::Scene;
 use umbrage_truth::{
-    Contacts, Edges, Emitter, Errors, Judged, Place, Quality, Rays, Seen, Surfaces, Visibility,
+    Contacts, Edges, Emitter, Errors, Judged, Place, Quality, Rays, Seen, Stack, Surfaces, Visibility,
+    hides_change,
 };
 
 /// How the truth was found, over all cameras and lights.
@@ -74,6 +77,9 @@ pub struct Shape {
     /// See [`Edges::ratio`].
     pub penumbra: Option<f64>,
 }
+
+/// A technique with more wrong pixels than this share of all is simply wrong: no ray is spent on its excuses.
+const MOST_LOOKED_AT: f64 = 0.005;
 
 /// The two saw the same surface when the drawn place lies on the triangle's plane, up to this share of a pixel.
 const SAME_PLANE_PX: f64 = 0.05;
@@ -148,11 +154,38 @@ impl ViewTruth {
         self.edges.len()
     }
 
-    /// Judges an answer.
-    pub fn judge(&self, v: &[Vec3], reach_px: &[f32]) -> (Errors, Shape) {
-        let shape =
-            Shape { gap_m: self.contacts.gap_m(&self.judged, v, reach_px), penumbra: self.edges.ratio(v) };
-        (self.judged.errors(v, reach_px), shape)
+    /// Judges an answer of a technique that reaches so far.
+    pub fn judge(&self, rays: &Rays<'_>, light: &Light, v: &[Vec3], reach: &Reach) -> (Errors, Shape) {
+        let mut reach_px = reach.px(&self.surfaces);
+        let hidden = self.hidden(rays, light, v, &reach_px, reach);
+        hidden.iter().for_each(|pixel| reach_px[*pixel] = f32::INFINITY);
+        let errors = Errors { hidden_pixels: hidden.len(), ..self.judged.errors(v, &reach_px) };
+        let gap_m = self.contacts.gap_m(&self.judged, v, &reach_px);
+        (errors, Shape { gap_m, penumbra: self.edges.ratio(v) })
+    }
+
+    /// The wrong pixels that have an edge within reach which the picture does not show.
+    fn hidden(
+        &self,
+        rays: &Rays<'_>,
+        light: &Light,
+        v: &[Vec3],
+        reach_px: &[f32],
+        reach: &Reach,
+    ) -> Vec<usize> {
+        let wrong = self.judged.wrong(v, reach_px);
+        if wrong.len() as f64 > MOST_LOOKED_AT * self.surfaces.len() as f64 {
+            return Vec::new();
+        }
+        let emitter = Emitter::new(light);
+        let is_hidden = |stack: &mut Stack, pixel: &usize| {
+            let seen = self.surfaces.seen[*pixel].as_ref()?;
+            let reach_m = reach.across_light_m(seen.p_world, emitter.center(seen.p_world).way);
+            let is_lit = self.judged.truth()[*pixel] == Vec3::ONE;
+            (reach_m > 0.0 && hides_change(rays, &emitter, seen, is_lit, reach_m, stack)).then_some(*pixel)
+        };
+        let found = wrong.par_iter().map_init(Stack::default, is_hidden).flatten();
+        found.collect()
     }
 }
 

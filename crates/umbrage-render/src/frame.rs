@@ -5,10 +5,10 @@ use crate::options::View;
 use crate::pipelines::MeshTarget;
 use crate::readback;
 use crate::renderer::{Renderer, Shadows};
-use umbrage::caster::GpuCasterView;
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
 use std::time::Instant;
+use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
 
 /// What a pass did.

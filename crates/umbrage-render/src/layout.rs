@@ -173,13 +173,18 @@ mod tests {
             ),
             ("UmbrageView", {
                 // Core's own test compares its members.
-                let module = naga::front::wgsl::parse_str(&umbrage::core::wgsl::assemble(&["view"]).expect("known")).expect("valid");
+                let module =
+                    naga::front::wgsl::parse_str(&umbrage::core::wgsl::assemble(&["view"]).expect("known"))
+                        .expect("valid");
                 let members = module.types.iter().find_map(|(_, ty)| match &ty.inner {
                     naga::TypeInner::Struct { members, .. } => Some(members.clone()),
                     _ => None,
                 });
                 let members = members.expect("a struct");
-                let names: Vec<_> = members.iter().map(|m| (&*m.name.clone().expect("named").leak(), m.offset as usize)).collect();
+                let names: Vec<_> = members
+                    .iter()
+                    .map(|m| (&*m.name.clone().expect("named").leak(), m.offset as usize))
+                    .collect();
                 (names, size_of::<GpuView>())
             }),
         ]);

@@ -132,9 +132,8 @@ impl Lights {
             });
             let view = made.views.get(first).map(|view| (first, view));
             made.lights.push(gpu_light(light, exposure, view, places, slide));
-            made.gpu_views.extend(
-                views.clone().map(|i| GpuView::new(&made.views[i], i as u32, settings, storage)),
-            );
+            made.gpu_views
+                .extend(views.clone().map(|i| GpuView::new(&made.views[i], i as u32, settings, storage)));
             made.views_of_light.push(views);
         }
         Ok(made)

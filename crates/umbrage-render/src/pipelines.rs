@@ -85,7 +85,11 @@ impl Layouts {
                         min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
                     },
                     texture(
-                        if color_maps { TextureSampleType::Float { filterable: false } } else { TextureSampleType::Depth },
+                        if color_maps {
+                            TextureSampleType::Float { filterable: false }
+                        } else {
+                            TextureSampleType::Depth
+                        },
                         TextureViewDimension::D2Array,
                     ),
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),

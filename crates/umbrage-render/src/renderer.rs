@@ -14,12 +14,12 @@ use crate::textures::Textures;
 use crate::{RenderError, exposure};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
+use umbrage::caster::{GpuCasterView, NO_DEFORM};
 use umbrage::core::fit::ShadowView;
 use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::Storage;
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
-use umbrage::caster::{GpuCasterView, NO_DEFORM};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
 use umbrage_scene::{Image, Instance, Reflectance, Scene};
 use wgpu::util::DeviceExt;
@@ -80,7 +80,8 @@ impl<'a> Renderer<'a> {
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
         let format = choose_format(storage, |format| gpu.usages_of(format))?;
-        let layouts = Layouts::new(&gpu.device, options.settings.combination.is_some() && format.storage.is_color());
+        let layouts =
+            Layouts::new(&gpu.device, options.settings.combination.is_some() && format.storage.is_color());
         let geometry = Geometry::new(&gpu.device, scene);
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
@@ -93,8 +94,7 @@ impl<'a> Renderer<'a> {
             &caster_layout,
         );
         let items = Items::new(scene, &geometry, &materials, options.deform_reach_m);
-        let lights =
-            Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world())?;
+        let lights = Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world())?;
         let shown = shown_view(scene, &lights, &options)?;
 
         let eye = Eye::new(camera, &options, shown.as_ref().map(|(light, view)| (*light, view)));

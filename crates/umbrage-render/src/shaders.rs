@@ -1,9 +1,9 @@
 //! The renderer's shaders: library modules, the chosen filter, and the passes, joined as text.
 
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
-use umbrage::core::DEPTH;
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
+use umbrage::core::DEPTH;
 use umbrage::core::technique::{Bias, Combination};
 use umbrage::core::wgsl::{assemble, assemble_with};
 

@@ -178,7 +178,11 @@ impl CasterPipelines {
         let bias = if is_color {
             wgpu::DepthBiasState::default()
         } else {
-            wgpu::DepthBiasState { constant: pass.offset.constant, slope_scale: pass.offset.slope, clamp: 0.0 }
+            wgpu::DepthBiasState {
+                constant: pass.offset.constant,
+                slope_scale: pass.offset.slope,
+                clamp: 0.0,
+            }
         };
         let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

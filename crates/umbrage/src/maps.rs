@@ -46,9 +46,8 @@ impl ShadowMaps {
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let texture =
             make("umbrage shadow maps", layers, format.format, drawn | wgpu::TextureUsages::TEXTURE_BINDING);
-        let scratch = is_color.then(|| {
-            make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default())
-        });
+        let scratch = is_color
+            .then(|| make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default()));
         let aspect = if is_color { wgpu::TextureAspect::All } else { wgpu::TextureAspect::DepthOnly };
         let view = |base_array_layer, count, dimension| {
             texture.create_view(&wgpu::TextureViewDescriptor {

@@ -103,7 +103,11 @@ pub fn fit(light: &Light, bounds_world: &[Aabb], options: &FitOptions) -> Result
 ///
 /// # Errors
 /// See [`FitError`].
-pub fn fit_all(light: &Light, bounds_world: &[Aabb], options: &FitOptions) -> Result<Vec<ShadowView>, FitError> {
+pub fn fit_all(
+    light: &Light,
+    bounds_world: &[Aabb],
+    options: &FitOptions,
+) -> Result<Vec<ShadowView>, FitError> {
     light.check()?;
     match light.kind {
         LightKind::Point => point::tiles(light, bounds_world, options),

@@ -44,7 +44,8 @@ mod tests {
 
     #[test]
     fn each_direction_is_in_its_tile_and_the_border_holds_what_lies_past_it() {
-        let light = Light { kind: LightKind::Point, position_world: Vec3::new(1.0, 2.0, 3.0), ..Light::default() };
+        let light =
+            Light { kind: LightKind::Point, position_world: Vec3::new(1.0, 2.0, 3.0), ..Light::default() };
         let room = [Aabb { min: Vec3::splat(-10.0), max: Vec3::splat(10.0) }];
         let options = FitOptions { size_texel: 64, least_near: 1e-4, border_texel: 4.0 };
         let views = fit_all(&light, &room, &options).expect("a room around it");
@@ -54,7 +55,8 @@ mod tests {
             // The border's texels are a little wider on the face than at its middle; 3.9 of 4 are always inside.
             let past = 1.0 + 2.0 * 3.9 / (64.0 - 8.0);
             for (x, y) in [(0.0, 0.0), (1.0, 1.0), (-1.0, 1.0), (past, 0.3), (-0.2, past), (-past, -past)] {
-                let at = locate(&view.texture_from_world(), light.position_world + 5.0 * (*axis + a * x + b * y));
+                let at =
+                    locate(&view.texture_from_world(), light.position_world + 5.0 * (*axis + a * x + b * y));
                 assert!(at.inside && at.depth > 0.0 && at.depth < 1.0, "{axis} {x} {y} {at:?}");
             }
             assert!(!locate(&view.texture_from_world(), light.position_world - *axis).inside);

@@ -45,7 +45,8 @@ macro_rules! choices {
 
 const EMPTY: Choice = Choice { id: "", label: "", summary: "", source: None, modules: &[], params: &[] };
 
-const WYNN: Source = Source { paper: "WYNN", year: 2001 };
+const INTEL: Source =
+    Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
 const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
 
@@ -92,7 +93,7 @@ choices! {
             label: "Float distance",
             summary: "distance from the light in a 32-bit float colour target, compared in the shader",
             params: &[MAP_SIZE],
-            source: Some(WYNN),
+            source: Some(INTEL),
             ..EMPTY
         };
         /// Distance in one 8-bit channel.
@@ -101,7 +102,7 @@ choices! {
             label: "8-bit packed",
             summary: "distance in one 8-bit channel of a colour target: 256 steps, to show that they are too few",
             params: &[MAP_SIZE],
-            source: Some(WYNN),
+            source: Some(INTEL),
             ..EMPTY
         };
         /// Distance in two 8-bit channels.
@@ -110,7 +111,7 @@ choices! {
             label: "16-bit packed",
             summary: "distance in two 8-bit channels of a colour target",
             params: &[MAP_SIZE],
-            source: Some(WYNN),
+            source: Some(INTEL),
             ..EMPTY
         };
         /// Distance in three 8-bit channels.
@@ -119,7 +120,7 @@ choices! {
             label: "24-bit packed",
             summary: "distance in three 8-bit channels of a colour target: any hardware has it",
             params: &[MAP_SIZE],
-            source: Some(WYNN),
+            source: Some(INTEL),
             ..EMPTY
         };
     }
@@ -141,6 +142,13 @@ choices! {
 choices! {
     /// What keeps a lit surface from shadowing itself.
     Bias {
+        /// Nothing to set.
+        Auto = Choice {
+            id: "auto",
+            label: "Automatic",
+            summary: "nothing to set: a texel blocks only where receiver's plane, caster's plane and a cone around the ray agree",
+            ..EMPTY
+        };
         /// Nothing.
         None = Choice {
             id: "none",
@@ -173,14 +181,6 @@ choices! {
             summary: "a uniform bias in the lookup matrix, for hardware without polygon offset",
             source: Some(EVERITT),
             params: &[MATRIX_BIAS],
-            ..EMPTY
-        };
-        /// Nothing to set.
-        Auto = Choice {
-            id: "auto",
-            label: "Automatic",
-            summary: "EXPERIMENT",
-            params: &[PLANE_MARGIN, NORMAL_OFFSET, CONE, ANCHOR, SLOPE_FACTOR],
             ..EMPTY
         };
         /// The receiver moved along its normal.
@@ -359,9 +359,6 @@ const PLANE_MARGIN: Param = Param {
     help: "how far a texel must lie before the receiver's plane to block it, in widths of a texel",
     cost: "none",
 };
-const CONE: Param = Param { name: "cone", label: "", unit: "", min: 0.0, max: 1e6, step: 0.1, default: ParamDefault::Fixed(8.0), help: "", cost: "" };
-const ANCHOR: Param = Param { name: "anchor", label: "", unit: "", min: 0.0, max: 1e6, step: 0.1, default: ParamDefault::Fixed(0.75), help: "", cost: "" };
-
 const NORMAL_OFFSET: Param = Param {
     name: "normal_offset",
     label: "Normal offset",

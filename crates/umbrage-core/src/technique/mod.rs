@@ -94,6 +94,9 @@ pub struct Technique {
 /// The technique that is used when none is named.
 pub const DEFAULT: &str = "linear";
 
+const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
+const INTEL: Source =
+    Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
 const WILLIAMS: Source = Source { paper: "Williams, Casting Curved Shadows on Curved Surfaces", year: 1978 };
 const REEVES: Source =
     Source { paper: "Reeves, Salesin and Cook, Rendering Antialiased Shadows with Depth Maps", year: 1987 };
@@ -102,7 +105,7 @@ const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware S
 const LINEAR: Combination = Combination {
     storage: Storage::Auto,
     projection: Projection::Fitted,
-    bias: Bias::Slope,
+    bias: Bias::Auto,
     filter: Filter::Linear,
 };
 
@@ -131,6 +134,30 @@ pub const TECHNIQUES: &[Technique] = &[
         family: Family::Map,
         source: Some(REEVES),
         combination: Some(LINEAR),
+    },
+    Technique {
+        id: "pcf",
+        label: "Percentage-closer filtering",
+        summary: "all comparisons of a box, blended: soft edges of one width, which narrow where caster and receiver touch",
+        family: Family::Map,
+        source: Some(REEVES),
+        combination: Some(Combination { filter: Filter::Pcf, ..LINEAR }),
+    },
+    Technique {
+        id: "kernel",
+        label: "Own kernel",
+        summary: "a float map, and comparisons blended by the weights of any kernel: a bell, or your own WGSL function",
+        family: Family::Map,
+        source: Some(BJORKE),
+        combination: Some(Combination { storage: Storage::R32Float, filter: Filter::Kernel, ..LINEAR }),
+    },
+    Technique {
+        id: "packed",
+        label: "Packed distance",
+        summary: "distance in three 8-bit channels, for hardware without depth or float textures to sample",
+        family: Family::Map,
+        source: Some(INTEL),
+        combination: Some(Combination { storage: Storage::Packed3, ..LINEAR }),
     },
     Technique {
         id: "matrix-bias",

@@ -3,7 +3,7 @@
 // `right` and `down`: from the receiver to each texel's centre, texels.
 fn umbrage_compare(view: UmbrageView, at: UmbrageTexel, stored: vec4f, right: vec4f, down: vec4f) -> UmbrageTaps {
     let behind = (at.depth - stored) * UMBRAGE_AWAY;
-    return UmbrageTaps(select(vec4f(0.0), vec4f(1.0), behind <= vec4f(view.constant)), vec4f(1.0), behind / at.unit);
+    return UmbrageTaps(select(vec4f(0.0), vec4f(1.0), behind <= vec4f(0.0)), vec4f(1.0), behind / at.unit);
 }
 
 // Does a wide filter become narrow where blocker and receiver are close?

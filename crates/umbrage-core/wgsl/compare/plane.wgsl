@@ -6,7 +6,7 @@
 fn umbrage_compare(view: UmbrageView, at: UmbrageTexel, stored: vec4f, right: vec4f, down: vec4f) -> UmbrageTaps {
     let plane = at.depth + at.slope.x * right + at.slope.y * down;
     let behind = (plane - stored) * UMBRAGE_AWAY;
-    return UmbrageTaps(select(vec4f(0.0), vec4f(1.0), behind <= vec4f(at.noise + view.constant * at.unit)), vec4f(1.0), behind / at.unit);
+    return UmbrageTaps(select(vec4f(0.0), vec4f(1.0), behind <= vec4f(at.noise + view.margin_texel * at.unit)), vec4f(1.0), behind / at.unit);
 }
 
 // Does a wide filter become narrow where blocker and receiver are close?

@@ -45,6 +45,9 @@ pub struct Errors {
     pub acne_pixels: usize,
     /// Sure receivers that leak.
     pub leak_pixels: usize,
+    /// Receivers that would be wrong and sure, were there no edge within reach that the picture does not show; they count to
+    /// the edge band.
+    pub hidden_pixels: usize,
 }
 
 impl Errors {
@@ -64,6 +67,7 @@ impl Errors {
             sure: sum(|e| e.sure),
             acne_pixels: sum(|e| e.acne_pixels),
             leak_pixels: sum(|e| e.leak_pixels),
+            hidden_pixels: sum(|e| e.hidden_pixels),
         }
     }
 }
@@ -96,6 +100,23 @@ impl Judged {
         self.receivers[pixel] && self.distance_px[pixel] > reach_px.max(LEAST_REACH_PX)
     }
 
+    /// The sure pixels that an answer has wrong: acne and leaks.
+    pub fn wrong(&self, v: &[Vec3], reach_px: &[f32]) -> Vec<usize> {
+        let is_wrong = |pixel: &usize| {
+            self.is_sure(*pixel, reach_px[*pixel])
+                && (self.has_acne(*pixel, v[*pixel]) || self.leaks(*pixel, v[*pixel]))
+        };
+        (0..self.truth.len()).filter(is_wrong).collect()
+    }
+
+    fn has_acne(&self, pixel: usize, v: Vec3) -> bool {
+        self.truth[pixel].min_element() >= 1.0 && v.min_element() < ACNE_BELOW
+    }
+
+    fn leaks(&self, pixel: usize, v: Vec3) -> bool {
+        self.truth[pixel].max_element() <= 0.0 && v.max_element() > LEAK_ABOVE
+    }
+
     /// Compares an answer. `reach_px` says for each pixel what the technique cannot resolve there.
     pub fn errors(&self, v: &[Vec3], reach_px: &[f32]) -> Errors {
         let mut sum = Errors::default();
@@ -116,8 +137,8 @@ impl Judged {
                 continue;
             }
             sum.sure += 1;
-            sum.acne_pixels += usize::from(truth.min_element() >= 1.0 && v.min_element() < ACNE_BELOW);
-            sum.leak_pixels += usize::from(truth.max_element() <= 0.0 && v.max_element() > LEAK_ABOVE);
+            sum.acne_pixels += usize::from(self.has_acne(pixel, v));
+            sum.leak_pixels += usize::from(self.leaks(pixel, v));
         }
         let share = |part: f64, whole: usize| if whole == 0 { 0.0 } else { part / whole as f64 };
         Errors {

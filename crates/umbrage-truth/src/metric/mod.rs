@@ -5,6 +5,7 @@ mod errors;
 mod flicker;
 mod flip;
 mod gap;
+mod hidden;
 mod penumbra;
 
 pub use distance::distance_to_change;
@@ -12,6 +13,7 @@ pub use errors::{Errors, Judged, LEAST_REACH_PX};
 pub use flicker::{Frame, flicker};
 pub use flip::flip;
 pub use gap::Contacts;
+pub use hidden::hides_change;
 pub use penumbra::Edges;
 
 use crate::{Emitter, Ray, Rays, Seen};
