@@ -3,6 +3,7 @@
 //! Right-handed, metres, Y up. Matrices are named `a_from_b`; positions carry their space (`p_world`); units are in
 //! names (`_m`, `_rad`, `_texel`, `_ms`). Visibility V is 1 where lit and 0 where shadowed.
 
+pub mod area;
 pub mod bounds;
 pub mod camera;
 pub mod depth;

@@ -8,6 +8,8 @@ struct UmbrageTexel {
     // In front of the light and inside the map. Behind the light the division shows a phantom, the point mirrored
     // through the light (Everitt, Rege and Cebenoyan 2001, "Advantages and Limitations"): never lit by this view.
     inside: bool,
+    // The side of the surface that `normal` points to faces the light.
+    faces: bool,
     // How much the stored depth changes from one texel to the next along the surface's plane, right and down.
     slope: vec2f,
     // How much it changes over a step towards the light that is as long as a texel is wide here; above 0.
@@ -16,7 +18,8 @@ struct UmbrageTexel {
     noise: f32,
 }
 
-// `normal` is the surface's own (not bent, not interpolated) in world space, of any length and either sign.
+// `normal` is the surface's own (not bent, not interpolated) in world space, of any length. But for `faces`, its sign is of no
+// matter.
 fn umbrage_locate(view: UmbrageView, p_world: vec3f, normal: vec3f) -> UmbrageTexel {
     let rows = transpose(view.texture_from_world);
     let p = vec4f(p_world, 1.0);
@@ -29,7 +32,7 @@ fn umbrage_locate(view: UmbrageView, p_world: vec3f, normal: vec3f) -> UmbrageTe
     let u_per_m = (rows[0].xyz - divided.x * rows[3].xyz) * per_w;
     let v_per_m = (rows[1].xyz - divided.y * rows[3].xyz) * per_w;
     let depth_per_m = (rows[2].xyz - divided.z * rows[3].xyz) * per_w;
-    // Along the light's ray neither u nor v changes.
+    // Along the light's ray neither u nor v changes. It points away from the light.
     let ray = cross(u_per_m, v_per_m);
     let ray_length = max(length(ray), 1e-30);
     // A surface seen edge-on has no slope; what is this close to it is taken for steep.
@@ -46,6 +49,6 @@ fn umbrage_locate(view: UmbrageView, p_world: vec3f, normal: vec3f) -> UmbrageTe
         + umbrage_depth_per_share(view, clamp(divided.z, 0.0, 1.0)) * view.step_share
         + length(depth_per_m) * largest_m * exp2(-21.0);
     return UmbrageTexel(
-        divided.xy, clamp(divided.z, 0.0, 1.0), inside, slope_uv * view.texel_uv, unit, noise,
+        divided.xy, clamp(divided.z, 0.0, 1.0), inside, along < 0.0, slope_uv * view.texel_uv, unit, noise,
     );
 }

@@ -75,7 +75,7 @@ impl Cost {
             draws: casters.iter().map(|pass| pass.work.draws).sum(),
             triangles: casters.iter().map(|pass| pass.work.triangles).sum(),
             texels: with.views().len() as u64 * side * side,
-            taps: u64::from(settings.taps()),
+            taps: u64::from(settings.taps() * settings.places()),
             pass_names: report.passes.iter().map(|pass| pass.name.clone()).collect(),
         })
     }

@@ -3,6 +3,7 @@
 use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
+use umbrage::core::area::places as places_of;
 use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit_all};
 use umbrage::core::layout::GpuView;
 use umbrage::core::lookup::{TextureOrigin, texture_from_world};
@@ -112,7 +113,10 @@ impl Lights {
                     least_near: storage.least_near(),
                     border_texel: settings.reach_texel(),
                 };
-                for place in light_places(light, settings) {
+                // How near to the light there is anything: from its middle.
+                let middle = fit_all(light, bounds_world, &options).ok();
+                let nearest_m = middle.iter().flatten().map(|view| view.near_m).fold(f32::INFINITY, f32::min);
+                for place in places_of(light, settings.places(), nearest_m) {
                     match fit_all(&place, bounds_world, &options) {
                         Ok(views) => {
                             made.light_of_view.extend(views.iter().map(|_| place));
@@ -138,11 +142,6 @@ impl Lights {
         }
         Ok(made)
     }
-}
-
-/// The places of a light that it is seen from.
-fn light_places(light: &Light, _settings: &Settings) -> Vec<Light> {
-    vec![*light]
 }
 
 /// Where the eye is: a place and 1, or the direction towards it and 0.

@@ -92,8 +92,10 @@ fn mapped(needs: &ShaderNeeds, combination: &Combination) -> String {
         "alias Seen = f32;
 fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> f32 {{
     let at = umbrage_locate(view, {moved}, normal);
-    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL);
-    return select(outside, {filter}(maps, {sampler}, view, at), at.inside);
+    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL || light.places > 1u);
+    let seen = select(outside, {filter}(maps, {sampler}, view, at), at.inside);
+    // Of an area light, a part may be below the surface's horizon though its middle is not.
+    return select(seen, 0.0, light.places > 1u && !at.faces);
 }}
 "
     );

@@ -246,6 +246,15 @@ choices! {
             params: &[WIDTH],
             ..EMPTY
         };
+        /// Maps from many places of an area light.
+        MultiView = Choice {
+            id: "multi-view",
+            label: "Multiple views",
+            summary: "maps from many places of an area light, blended: umbra and penumbra in their true widths",
+            source: Some(BJORKE),
+            params: &[VIEWS],
+            ..EMPTY
+        };
     }
 }
 
@@ -383,6 +392,18 @@ const WIDTH: Param = Param {
     cost: "lookups grow with its square: ((width + 1) / 2)^2 gathers",
 };
 
+const VIEWS: Param = Param {
+    name: "views",
+    label: "Views",
+    unit: "",
+    min: 1.0,
+    max: 1024.0,
+    step: 1.0,
+    default: ParamDefault::Fixed(16.0),
+    help: "from how many places of an area light maps are drawn; a light without area has one",
+    cost: "memory, drawing and lookups grow with it",
+};
+
 const MATRIX_BIAS: Param = Param {
     name: "matrix_bias",
     label: "Matrix bias",
@@ -437,7 +458,9 @@ impl Combination {
 
     /// Is the comparison left to the hardware's comparison sampler? It has one depth for all texels, and depth textures only.
     pub fn compares_in_hardware(&self) -> bool {
-        self.filter == Filter::Linear && !self.storage.is_color() && self.compare_module() == "compare/plain"
+        matches!(self.filter, Filter::Linear | Filter::MultiView)
+            && !self.storage.is_color()
+            && self.compare_module() == "compare/plain"
     }
 
     fn compare_module(&self) -> &'static str {
@@ -450,7 +473,7 @@ impl Combination {
 
     fn filter_module(&self) -> &'static str {
         match self.filter {
-            Filter::Nearest => "filter/nearest",
+            Filter::Nearest | Filter::MultiView => "filter/nearest",
             Filter::Linear if self.compares_in_hardware() => "filter/linear_hardware",
             Filter::Linear => "filter/linear",
             Filter::Pcf | Filter::Kernel => "filter/kernel",
@@ -467,7 +490,7 @@ impl Combination {
     pub fn reach_texel(&self, width_texel: f32) -> f32 {
         match self.filter {
             Filter::Nearest => 0.5,
-            Filter::Linear => 1.0,
+            Filter::Linear | Filter::MultiView => 1.0,
             Filter::Pcf | Filter::Kernel => 0.5 * (width_texel + 1.0),
         }
     }
@@ -476,7 +499,7 @@ impl Combination {
     pub fn taps(&self, width_texel: f32) -> u32 {
         let quads = (0.5 * (width_texel + 1.0)).ceil() as u32;
         let lookups = match self.filter {
-            Filter::Nearest | Filter::Linear => 1,
+            Filter::Nearest | Filter::Linear | Filter::MultiView => 1,
             Filter::Pcf | Filter::Kernel => quads * quads,
         };
         let channels = match self.storage {

@@ -160,6 +160,14 @@ pub const TECHNIQUES: &[Technique] = &[
         combination: Some(Combination { storage: Storage::Packed3, ..LINEAR }),
     },
     Technique {
+        id: "multi-view",
+        label: "Multiple views",
+        summary: "an area light from many places, blended: converges to the true soft shadow as views are added",
+        family: Family::Map,
+        source: Some(BJORKE),
+        combination: Some(Combination { filter: Filter::MultiView, ..LINEAR }),
+    },
+    Technique {
         id: "matrix-bias",
         label: "Biased lookup matrix",
         summary: "the bias stands in the lookup matrix, for hardware without polygon offset: uniform, so it leaks",

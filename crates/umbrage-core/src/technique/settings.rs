@@ -142,6 +142,11 @@ impl Settings {
         self.combination.map_or(0.0, |c| c.reach_texel(self.value("width").unwrap_or(1.0)))
     }
 
+    /// From how many places an area light is seen.
+    pub fn places(&self) -> u32 {
+        self.value("views").map_or(1, |views| views as u32)
+    }
+
     /// Lookups of the map for each lit pixel and view: a gather counts once.
     pub fn taps(&self) -> u32 {
         self.combination.map_or(0, |c| c.taps(self.value("width").unwrap_or(1.0)))
