@@ -5,6 +5,7 @@
 
 pub mod bounds;
 pub mod camera;
+pub mod density;
 pub mod depth;
 pub mod fit;
 pub mod frustum;

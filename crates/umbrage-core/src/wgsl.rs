@@ -37,6 +37,7 @@ pub const MODULES: &[Module] = &[
         "from world space to a place and depth in the map; says when outside or behind",
         ["view"]
     ),
+    module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
     module!("filter/nearest", "one comparison with the texel that holds the receiver", ["locate"]),
     module!("filter/linear", "2x2 comparisons blended by the hardware", ["locate"]),
 ];
