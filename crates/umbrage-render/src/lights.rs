@@ -3,12 +3,12 @@
 use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
-use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit};
+use umbrage::core::fit::{Eye, FitError, FitOptions, ShadowView, fit};
 use umbrage::core::layout::GpuView;
 use umbrage::core::lookup::{TextureOrigin, texture_from_world};
 use umbrage::core::plan::lookup_bias_depth;
 use umbrage::core::projection::perspective;
-use umbrage::core::technique::Settings;
+use umbrage::core::technique::{Projection, Settings};
 use umbrage::core::{Aabb, DEPTH, Light, LightKind};
 use umbrage_scene::Scene;
 
@@ -84,6 +84,7 @@ impl Lights {
         settings: &Settings,
         exposure: f32,
         bounds_world: &[Aabb],
+        eye: Eye,
     ) -> Result<Self, umbrage::core::LightError> {
         let mut made = Self {
             lights: Vec::new(),
@@ -103,9 +104,21 @@ impl Lights {
             let light = &placed.light;
             light.check()?;
             let view = settings.combination.and_then(|combination| {
-                let options = FitOptions { size_texel, least_near: combination.storage.least_near() };
+                let options = FitOptions {
+                    size_texel,
+                    least_near: combination.storage.least_near(),
+                    projection: combination.projection,
+                    eye: Some(eye),
+                    border_texel: combination.filter.reach_texel() + 1.0,
+                };
                 match fit(light, bounds_world, &options) {
-                    Ok(view) => Some((made.views.len(), view)),
+                    Ok(view) => {
+                        if let Some(why) = view.fallback {
+                            let (asked, got) = (combination.projection.row().id, view.projection.row().id);
+                            made.warnings.push(format!("light {index}: {why}: `{got}` instead of `{asked}`"));
+                        }
+                        Some((made.views.len(), view))
+                    }
                     // It lights nothing, so nothing is missing.
                     Err(FitError::NothingInReach) => None,
                     Err(error) => {
@@ -118,7 +131,13 @@ impl Lights {
                 made.slides.push(image);
                 made.slides.len() - 1
             });
-            made.lights.push(gpu_light(light, exposure, view.as_ref().map(|(i, v)| (*i, v)), slide));
+            let mut on_gpu = gpu_light(light, exposure, view.as_ref().map(|(i, v)| (*i, v)), slide);
+            if slide.is_some() && view.is_some_and(|(_, view)| view.projection != Projection::Fitted) {
+                // A slide stays where it is when the eye moves.
+                let whole = fit(light, bounds_world, &FitOptions::default()).ok();
+                on_gpu.slide_from_world = slide_from_world(light, whole.as_ref());
+            }
+            made.lights.push(on_gpu);
             made.view_of_light.push(view.map(|(i, _)| i));
             if let Some((layer, view)) = view {
                 made.gpu_views.push(GpuView::new(

@@ -5,6 +5,7 @@ use crate::bounds::Aabb;
 use crate::depth::DEPTH;
 use crate::light::Light;
 use crate::projection::orthographic;
+use crate::technique::Projection;
 use glam::{Mat4, Vec3};
 
 pub(super) fn fit(
@@ -37,6 +38,8 @@ pub(super) fn fit(
         far_m,
         texel_m: 2.0 * half_m / options.size_texel as f32,
         perspective: false,
+        projection: Projection::Fitted,
+        fallback: None,
     })
 }
 
@@ -49,7 +52,7 @@ mod tests {
 
     #[test]
     fn every_corner_is_inside_at_any_scale_and_direction() {
-        let options = FitOptions { size_texel: 512, least_near: 1e-4 };
+        let options = FitOptions { size_texel: 512, ..FitOptions::default() };
         for scale in [1e-3f32, 1.0, 1e5] {
             for direction in [Vec3::NEG_Y, Vec3::new(1.0, -2.0, 0.3), Vec3::X] {
                 let kind = LightKind::Directional;

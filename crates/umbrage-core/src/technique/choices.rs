@@ -98,6 +98,36 @@ choices! {
             modules: &["locate"],
             ..EMPTY
         };
+        /// The part of that which the eye sees.
+        Adaptive = Choice {
+            id: "adaptive",
+            label: "Adaptive",
+            summary: "only what the eye sees of the light's cone (or box), each axis for itself; follows the eye",
+            modules: &["locate"],
+            source: Some(Source { paper: "Nagy, Real-Time Shadows on Complex Objects", year: 2000 }),
+            ..EMPTY
+        };
+        /// Warped as the eye's own perspective.
+        Perspective = Choice {
+            id: "perspective",
+            label: "Perspective",
+            summary: "a map in the space behind the eye's perspective, so that near things get more texels",
+            modules: &["locate"],
+            source: Some(Source { paper: "Stamminger and Drettakis, Perspective Shadow Maps", year: 2002 }),
+            ..EMPTY
+        };
+        /// Warped by a perspective across the light.
+        LightSpacePerspective = Choice {
+            id: "lispsm",
+            label: "Light-space perspective",
+            summary: "a perspective across the light whose strength evens out near and far errors",
+            modules: &["locate"],
+            source: Some(Source {
+                paper: "Wimmer, Scherzer and Purgathofer, Light Space Perspective Shadow Maps",
+                year: 2004,
+            }),
+            ..EMPTY
+        };
     }
 }
 
