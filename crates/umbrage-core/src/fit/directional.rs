@@ -8,6 +8,9 @@ use crate::projection::orthographic;
 use crate::technique::Projection;
 use glam::{Mat4, Vec3};
 
+/// The least width of a map as a share of how far from the world's origin it lies: some hundred roundings.
+pub(super) const ROUNDING: f32 = 2e-5;
+
 pub(super) fn fit(
     light: &Light,
     bounds_world: &[Aabb],
@@ -23,10 +26,13 @@ pub(super) fn fit(
     }
     let (size, center) = (bounds_light.size(), bounds_light.center());
     // Square texels: the longer side sets their size. A texel of margin keeps the outermost caster inside the map.
-    let half_m = 0.5 * size.x.max(size.y).max(size.z * 1e-3).max(f32::MIN_POSITIVE.sqrt());
+    // No map is so small that the rounding of places in the world is a part of it.
+    let least_m = ROUNDING * bounds_light.min.abs().max(bounds_light.max.abs()).max_element();
+    let least_m = least_m.max(f32::MIN_POSITIVE.sqrt());
+    let half_m = 0.5 * size.x.max(size.y).max(size.z * 1e-3).max(least_m);
     let half_m = half_m * (1.0 + 2.0 / options.size_texel.max(4) as f32);
     let depth_m = size.z.max(half_m * 1e-3);
-    let near_m = 0.01 * depth_m;
+    let near_m = (0.01 * depth_m).max(least_m);
     let back_off_m = bounds_light.max.z + 2.0 * near_m;
     let light_from_world =
         Mat4::from_translation(-Vec3::new(center.x, center.y, back_off_m)) * light_rotation_from_world;

@@ -5,6 +5,7 @@
 //! plane that seen receivers cover is all that a map must hold, wherever its casters are.
 
 use super::convex::{Convex, hull};
+use super::directional::ROUNDING;
 use super::{Eye, Fallback, FitOptions};
 use crate::bounds::Aabb;
 use crate::camera::Projection;
@@ -125,12 +126,16 @@ pub(super) struct Seen {
     pub along: (f64, f64),
     /// Half of the width that the image has when it holds everything that the light reaches.
     pub whole_half: f64,
+    /// No window is less than this wide, from its middle to its edge: single precision would not carry it.
+    pub least_half: f64,
 }
 
 /// Depth of the cone's tip that is left out, as a share of its reach. Nothing that near has a place on the image plane.
 pub(super) const TIP: f64 = 1e-6;
 /// The round cone's planes: so many touch it, so the pyramid that they make holds it.
 const SIDES: usize = 12;
+/// The least width of a window as a share of the light's whole image.
+const LEAST_SHARE: f64 = 1.0 / 512.0;
 /// Cells along a side of the grid that picks probes.
 const CELLS: f64 = 12.0;
 /// Surfaces that face the light by less than this cosine are not judged: in every map they have next to no texels.
@@ -189,9 +194,13 @@ impl Seen {
             hull,
             along: (0.0, 0.0),
             whole_half,
+            least_half: whole_half * LEAST_SHARE,
         };
         seen.probes = seen.pick(&body, &corners);
-        seen.along = seen.range(light, &corners, options);
+        let rounding = rounding_of(bounds);
+        seen.along = seen.range(light, &corners, rounding, options);
+        let on_image = if seen.space.tan_outer.is_some() { rounding / seen.along.1 } else { rounding };
+        seen.least_half = seen.least_half.max(on_image);
         let usable = seen.along.0.is_finite() && seen.along.1.is_finite() && seen.along.0 < seen.along.1;
         if usable { Ok(seen) } else { Err(Fallback::NothingSeen) }
     }
@@ -241,7 +250,8 @@ impl Seen {
     /// A pixel on a sheet, or on what a side of a box stands for; `None` unless it faces both eye and light.
     fn probe(&self, p: DVec3, normal: DVec3, is_flat: bool) -> Option<Probe> {
         let toward_eye = self.to_eye(p).dot(normal);
-        let normal = if is_flat && toward_eye < 0.0 { -normal } else { normal };
+        let side = if is_flat && toward_eye < 0.0 { -1.0 } else { 1.0 };
+        let normal = normal * side;
         if self.to_light(p).dot(normal) < FACING || (toward_eye <= 0.0 && !is_flat) {
             return None;
         }
@@ -259,7 +269,13 @@ impl Seen {
     }
 
     /// Near and far: from the first caster that lies on a ray to what is seen, to the last that is seen.
-    fn range(&self, light: &Light, corners: &[[DVec3; 8]], options: &FitOptions) -> (f64, f64) {
+    fn range(
+        &self,
+        light: &Light,
+        corners: &[[DVec3; 8]],
+        rounding: f64,
+        options: &FitOptions,
+    ) -> (f64, f64) {
         let far = self.points.iter().map(|p| -p.p.z).fold(f64::NEG_INFINITY, f64::max);
         let highest = corners.iter().flatten().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
         let (least, most) = extent(&self.hull);
@@ -287,7 +303,7 @@ impl Seen {
             let near = light.near_m.map_or((near * 0.999).max(least_near), f64::from);
             return (near.min(far * 0.99), far);
         }
-        let hair = 0.01 * (far - near).max(self.whole_half * 1e-3);
+        let hair = (0.01 * (far - near)).max(self.whole_half * 1e-5).max(rounding);
         (near - hair, far + hair)
     }
 }
@@ -331,7 +347,15 @@ fn reach_of(light: &Light, space: &Space, bounds: &[Aabb]) -> (f64, f64) {
         .fold((0.0f64, 0.0f64), |(size, depth), p| (size.max(p.x.abs()).max(p.y.abs()), depth.max(-p.z)));
     let asked = light.far_m.or(light.range_m).map_or(f64::INFINITY, f64::from);
     let reach = asked.min(depth * 1.001);
-    (reach, space.tan_outer.unwrap_or(size.max(1e-3 * depth).max(f64::from(f32::MIN_POSITIVE))))
+    let least = rounding_of(bounds);
+    (reach, space.tan_outer.unwrap_or(size.max(1e-3 * depth).max(least)))
+}
+
+/// Lengths below this are lost in the rounding of places in the world, metres.
+fn rounding_of(bounds: &[Aabb]) -> f64 {
+    let whole = bounds.iter().fold(Aabb::EMPTY, |all, b| all.union(b));
+    let farthest = whole.min.abs().max(whole.max.abs()).max_element();
+    if whole.is_empty() { 0.0 } else { f64::from((ROUNDING * farthest).max(f32::MIN_POSITIVE.sqrt())) }
 }
 
 /// The eye, and the body that it sees, in the light's space.

@@ -26,8 +26,6 @@ pub(super) struct Window {
 
 /// `c` may not differ by more than this over what is seen: single precision would not carry it.
 const MOST_WARP: f64 = 1e4;
-/// No window is smaller than this share of the light's whole image, for the same reason.
-const LEAST_SHARE: f64 = 1.0 / 512.0;
 /// Edges of the hull along which an unwarped window may lie.
 const EDGES: usize = 12;
 
@@ -77,7 +75,7 @@ impl Window {
             .collect();
         let (low, high) = extent(&places);
         let middle = 0.5 * (low + high);
-        let half = (0.5 * (high - low)).max(DVec2::splat(LEAST_SHARE * seen.whole_half));
+        let half = (0.5 * (high - low)).max(DVec2::splat(seen.least_half));
         let scale = (1.0 - 1e-4) * (1.0 - 2.0 * border(options)) / half;
         let a = (rows[0] - c * middle.x) * scale.x;
         let b = (rows[1] - c * middle.y) * scale.y;
