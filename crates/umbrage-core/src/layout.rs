@@ -37,8 +37,8 @@ pub struct GpuView {
     pub normal_texel: f32,
     /// World space.
     pub origin: Vec3,
-    /// Nothing.
-    pub pad: f32,
+    /// 1 or 0.
+    pub warped: u32,
 }
 
 impl GpuView {
@@ -61,7 +61,7 @@ impl GpuView {
             margin_texel: settings.value("plane_margin").unwrap_or(0.0),
             normal_texel: settings.value("normal_offset").unwrap_or(0.0),
             origin: view.light_from_world.inverse().w_axis.truncate(),
-            pad: 0.0,
+            warped: u32::from(view.is_warped()),
         }
     }
 }
@@ -102,7 +102,7 @@ mod tests {
             ("margin_texel", offset_of!(GpuView, margin_texel)),
             ("normal_texel", offset_of!(GpuView, normal_texel)),
             ("origin", offset_of!(GpuView, origin)),
-            ("pad", offset_of!(GpuView, pad)),
+            ("warped", offset_of!(GpuView, warped)),
         ];
         assert_eq!(shader, mirror);
         assert_eq!(span as usize, size_of::<GpuView>());

@@ -6,6 +6,7 @@
 pub mod area;
 pub mod bounds;
 pub mod camera;
+pub mod density;
 pub mod depth;
 pub mod fit;
 pub mod frustum;

@@ -72,6 +72,7 @@ pub const MODULES: &[Module] = &[
         "comparisons with all texels that a kernel reaches, blended",
         ["map", "compare", "kernel"]
     ),
+    module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
 ];
 
 /// A name that is no module.

@@ -27,7 +27,8 @@ struct UmbrageView {
     normal_texel: f32,
     // Where the light is; of no use for parallel light.
     origin: vec3f,
-    pad: f32,
+    // 1: the map is warped towards the eye, so depth does not tell distance by near and far alone.
+    warped: u32,
 }
 
 // Which way stored depth grows: 1 away from the light, -1 towards it (reversed). `umbrage_core::DEPTH` says the same, and

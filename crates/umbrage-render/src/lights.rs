@@ -4,11 +4,11 @@ use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use umbrage::core::area::places as places_of;
-use umbrage::core::fit::{FitError, FitOptions, ShadowView, fit_all};
+use umbrage::core::fit::{Eye, FitError, FitOptions, ShadowView, fit, fit_all};
 use umbrage::core::layout::GpuView;
 use umbrage::core::lookup::{TextureOrigin, texture_from_world};
 use umbrage::core::projection::perspective;
-use umbrage::core::technique::{Settings, Storage};
+use umbrage::core::technique::{Projection, Settings, Storage};
 use umbrage::core::{Aabb, DEPTH, Light, LightKind};
 use umbrage_scene::Scene;
 
@@ -87,6 +87,7 @@ impl Lights {
         storage: Storage,
         exposure: f32,
         bounds_world: &[Aabb],
+        eye: Eye,
     ) -> Result<Self, umbrage::core::LightError> {
         let mut made = Self {
             lights: Vec::new(),
@@ -107,11 +108,13 @@ impl Lights {
             light.check()?;
             let first = made.views.len();
             let mut places = 0;
-            if settings.combination.is_some() {
+            if let Some(combination) = settings.combination {
                 let options = FitOptions {
                     size_texel,
                     least_near: storage.least_near(),
-                    border_texel: settings.reach_texel(),
+                    projection: combination.projection,
+                    eye: Some(eye),
+                    border_texel: settings.reach_texel() + 1.0,
                 };
                 // How near to the light there is anything: from its middle.
                 let middle = fit_all(light, bounds_world, &options).ok();
@@ -128,6 +131,11 @@ impl Lights {
                         Err(error) => made.warnings.push(format!("light {index}: {error}")),
                     }
                 }
+                if let Some((view, why)) = made.views.get(first).and_then(|v| v.fallback.map(|why| (v, why)))
+                {
+                    let (asked, got) = (combination.projection.row().id, view.projection.row().id);
+                    made.warnings.push(format!("light {index}: {why}: `{got}` instead of `{asked}`"));
+                }
             }
             let views = first..made.views.len();
             let slide = placed.cookie.map(|image| {
@@ -135,7 +143,13 @@ impl Lights {
                 made.slides.len() - 1
             });
             let view = made.views.get(first).map(|view| (first, view));
-            made.lights.push(gpu_light(light, exposure, view, places, slide));
+            let mut on_gpu = gpu_light(light, exposure, view, places, slide);
+            if slide.is_some() && view.is_some_and(|(_, view)| view.projection != Projection::Fitted) {
+                // A slide stays where it is when the eye moves.
+                let whole = fit(light, bounds_world, &FitOptions::default()).ok();
+                on_gpu.slide_from_world = slide_from_world(light, whole.as_ref());
+            }
+            made.lights.push(on_gpu);
             made.gpu_views
                 .extend(views.clone().map(|i| GpuView::new(&made.views[i], i as u32, settings, storage)));
             made.views_of_light.push(views);

@@ -15,7 +15,7 @@ use crate::{RenderError, exposure};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use umbrage::caster::{GpuCasterView, NO_DEFORM};
-use umbrage::core::fit::ShadowView;
+use umbrage::core::fit::{self, ShadowView};
 use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::Storage;
@@ -94,7 +94,9 @@ impl<'a> Renderer<'a> {
             &caster_layout,
         );
         let items = Items::new(scene, &geometry, &materials, options.deform_reach_m);
-        let lights = Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world())?;
+        let seen_by = fit::Eye { camera: *camera, aspect: options.size.x as f32 / options.size.y as f32 };
+        let lights =
+            Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world(), seen_by)?;
         let shown = shown_view(scene, &lights, &options)?;
 
         let eye = Eye::new(camera, &options, shown.as_ref().map(|(light, view)| (*light, view)));

@@ -6,9 +6,9 @@ use common::compare::{check, check_differs, differences};
 use common::scenes::{builtin, checker, cut_out, over_floor, sheet, sun_of, with_light};
 use common::{gpu, settings, shoot, shoot_with};
 use glam::{Mat4, Vec3};
-use umbrage_render::umbrage::core::technique::{Bias, Filter, Storage};
+use umbrage_render::umbrage::core::technique::{Bias, Filter, Projection, Storage};
 use umbrage_render::umbrage::core::wgsl::assemble;
-use umbrage_render::umbrage::core::{Light, LightKind};
+use umbrage_render::umbrage::core::{Camera, Light, LightKind};
 use umbrage_render::{RenderOptions, View};
 use umbrage_scene::{AlphaMode, Material, Scene};
 
@@ -45,6 +45,38 @@ fn depth24() {
 #[test]
 fn depth32f() {
     visibility("depth32f", &builtin("columns"), "linear", &[("storage", "depth32f"), ("map_size", "512")]);
+}
+
+/// From where a man would stand at the colonnade's end, so that the warps are strong.
+fn standing() -> Scene {
+    let mut scene = builtin("columns");
+    let (eye, target) = (Vec3::new(-7.5, 1.7, 1.4), Vec3::new(5.0, 1.7, 1.4));
+    scene.cameras[0].camera = Camera::look_at(eye, target, 0.9, 0.1, 80.0);
+    scene
+}
+
+#[test]
+fn projection_fitted() {
+    visibility("projection-fitted", &standing(), "linear", &[("map_size", "512")]);
+}
+
+#[test]
+fn projection_adaptive() {
+    let pairs = [("projection", "adaptive"), ("map_size", "512")];
+    visibility("projection-adaptive", &standing(), "linear", &pairs);
+}
+
+#[test]
+fn projection_perspective() {
+    let pairs = [("projection", "perspective"), ("map_size", "512")];
+    visibility("projection-perspective", &standing(), "linear", &pairs);
+}
+
+#[test]
+fn projection_lispsm() {
+    let sun = sun_of(&standing());
+    let pairs = [("projection", "lispsm"), ("map_size", "512")];
+    visibility("projection-lispsm", &with_light(standing(), sun), "linear", &pairs);
 }
 
 #[test]
@@ -244,6 +276,7 @@ fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {
     };
     Storage::ALL.iter().filter(|s| **s != Storage::Auto).for_each(|s| golden(s.row().id.to_owned()));
     Bias::ALL.iter().for_each(|b| golden(format!("bias-{}", b.row().id)));
+    Projection::ALL.iter().for_each(|p| golden(format!("projection-{}", p.row().id)));
     for filter in Filter::ALL {
         golden(filter.row().id.to_owned());
         let text = assemble(filter.row().modules).expect("modules of a filter");

@@ -43,7 +43,7 @@ fn the_texel_that_is_written_is_the_one_that_is_looked_up() {
         ..Light::spot(Vec3::new(1.0, 6.0, 2.0), Vec3::ZERO, 0.5, 0.6)
     };
     assert!(matches!(light.kind, LightKind::Spot { .. }));
-    let options = FitOptions { size_texel: SIDE, least_near: 1e-4 };
+    let options = FitOptions { size_texel: SIDE, ..FitOptions::default() };
     let around = Aabb { min: Vec3::splat(-3.0), max: Vec3::splat(3.0) };
     let view = fit(&light, &[around], &options).expect("a view");
     let mut seen = 0;

@@ -5,7 +5,11 @@ use crate::bounds::Aabb;
 use crate::depth::DEPTH;
 use crate::light::Light;
 use crate::projection::orthographic;
+use crate::technique::Projection;
 use glam::{Mat4, Vec3};
+
+/// The least width of a map as a share of how far from the world's origin it lies: some hundred roundings.
+pub(super) const ROUNDING: f32 = 2e-5;
 
 pub(super) fn fit(
     light: &Light,
@@ -22,10 +26,13 @@ pub(super) fn fit(
     }
     let (size, center) = (bounds_light.size(), bounds_light.center());
     // Square texels: the longer side sets their size. A texel of margin keeps the outermost caster inside the map.
-    let half_m = 0.5 * size.x.max(size.y).max(size.z * 1e-3).max(f32::MIN_POSITIVE.sqrt());
+    // No map is so small that the rounding of places in the world is a part of it.
+    let least_m = ROUNDING * bounds_light.min.abs().max(bounds_light.max.abs()).max_element();
+    let least_m = least_m.max(f32::MIN_POSITIVE.sqrt());
+    let half_m = 0.5 * size.x.max(size.y).max(size.z * 1e-3).max(least_m);
     let half_m = half_m * options.widened() * (1.0 + 2.0 / options.size_texel.max(4) as f32);
     let depth_m = size.z.max(half_m * 1e-3);
-    let near_m = 0.01 * depth_m;
+    let near_m = (0.01 * depth_m).max(least_m);
     let back_off_m = bounds_light.max.z + 2.0 * near_m;
     let light_from_world =
         Mat4::from_translation(-Vec3::new(center.x, center.y, back_off_m)) * light_rotation_from_world;
@@ -37,6 +44,8 @@ pub(super) fn fit(
         far_m,
         texel_m: 2.0 * half_m / options.size_texel as f32,
         perspective: false,
+        projection: Projection::Fitted,
+        fallback: None,
     })
 }
 
@@ -49,7 +58,7 @@ mod tests {
 
     #[test]
     fn every_corner_is_inside_at_any_scale_and_direction() {
-        let options = FitOptions { size_texel: 512, least_near: 1e-4, border_texel: 0.0 };
+        let options = FitOptions { size_texel: 512, ..FitOptions::default() };
         for scale in [1e-3f32, 1.0, 1e5] {
             for direction in [Vec3::NEG_Y, Vec3::new(1.0, -2.0, 0.3), Vec3::X] {
                 let kind = LightKind::Directional;

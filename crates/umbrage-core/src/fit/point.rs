@@ -1,9 +1,10 @@
 //! The six views of a point light, one along each axis of the world. Each is wider than its 90 degrees by the border, so that a
 //! filter finds on a face's own tile what lies just past the face.
 
-use super::{FitError, FitOptions, ShadowView, spot};
+use super::{Fallback, FitError, FitOptions, ShadowView, spot};
 use crate::bounds::Aabb;
 use crate::light::{Light, up_for};
+use crate::technique::Projection;
 use glam::{Mat3, Vec3};
 
 /// Which way each tile looks, in the order of the tiles.
@@ -32,7 +33,9 @@ pub(super) fn tiles(
         }),
         other => other,
     };
-    AXES.iter().zip(fitted).map(filled).collect()
+    let fallback = (options.projection != Projection::Fitted).then_some(Fallback::Tiles);
+    let tiles = AXES.iter().zip(fitted).map(filled);
+    tiles.map(|tile| tile.map(|view| ShadowView { fallback, ..view })).collect()
 }
 
 #[cfg(test)]
@@ -47,7 +50,7 @@ mod tests {
         let light =
             Light { kind: LightKind::Point, position_world: Vec3::new(1.0, 2.0, 3.0), ..Light::default() };
         let room = [Aabb { min: Vec3::splat(-10.0), max: Vec3::splat(10.0) }];
-        let options = FitOptions { size_texel: 64, least_near: 1e-4, border_texel: 4.0 };
+        let options = FitOptions { size_texel: 64, border_texel: 4.0, ..FitOptions::default() };
         let views = fit_all(&light, &room, &options).expect("a room around it");
         assert_eq!(views.len(), 6);
         for (axis, view) in AXES.iter().zip(&views) {
@@ -66,7 +69,7 @@ mod tests {
     #[test]
     fn a_light_beside_everything_has_tiles_all_the_same() {
         let light = Light { kind: LightKind::Point, ..Light::default() };
-        let options = FitOptions { size_texel: 64, least_near: 1e-4, border_texel: 1.0 };
+        let options = FitOptions { size_texel: 64, ..FitOptions::default() };
         let aside = [Aabb { min: Vec3::new(5.0, -1.0, -1.0), max: Vec3::new(7.0, 1.0, 1.0) }];
         let views = fit_all(&light, &aside, &options).expect("a box to the right");
         assert!(views.iter().all(|v| v.clip_from_world().is_finite()));

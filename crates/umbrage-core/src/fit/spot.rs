@@ -1,12 +1,14 @@
 //! The view of a spot light: its cone, with near and far fitted to what is in it.
 
+use super::convex::Convex;
+use super::seen::TIP;
 use super::{FitError, FitOptions, ShadowView};
 use crate::bounds::Aabb;
 use crate::depth::DEPTH;
-use crate::frustum::Frustum;
 use crate::light::Light;
 use crate::projection::perspective;
-use glam::{Mat3, Mat4};
+use crate::technique::Projection;
+use glam::{DVec3, Mat3, Mat4};
 
 pub(super) fn fit(
     light: &Light,
@@ -31,25 +33,31 @@ pub(super) fn pyramid(
     let light_from_world = world_from_light.inverse();
     let tan_outer = tan_half * options.widened();
 
-    let depth_of = |bounds: &Aabb| {
+    let farthest = |bounds: &Aabb| {
         let depths = bounds.corners().map(|corner| -light_from_world.transform_point3(corner).z);
-        depths.into_iter().fold((f32::INFINITY, 0.0f32), |(least, most), d| (least.min(d), most.max(d)))
+        depths.into_iter().fold(0.0f32, f32::max)
     };
-
-    // The cone down to the farthest box tells which boxes count; their corners then tell the range.
-    let everything_m =
-        bounds_world.iter().filter(|b| !b.is_empty()).map(|b| depth_of(b).1).fold(0.0, f32::max);
+    let everything_m = bounds_world.iter().filter(|b| !b.is_empty()).map(farthest).fold(0.0, f32::max);
     let reach_m = light.far_m.or(light.range_m).unwrap_or(f32::INFINITY).min(everything_m * 1.001);
     if reach_m <= 0.0 {
         return Err(FitError::NothingInReach);
     }
-    let widest = perspective(tan_outer, tan_outer, reach_m * 1e-6, reach_m, DEPTH) * light_from_world;
-    let cone = Frustum::from_clip(widest, DEPTH);
+    // The map's pyramid down to the farthest box. What of each box lies in it tells the range: a floor that reaches
+    // below the light counts only where the light sees it.
+    let (tan, reach) = (f64::from(tan_outer), f64::from(reach_m));
+    let pyramid = Convex::from_corners(std::array::from_fn(|i| {
+        let along = if i & 4 == 0 { TIP * reach } else { reach };
+        let side = |bit: usize| if i & bit == 0 { -along * tan } else { along * tan };
+        DVec3::new(side(1), side(2), -along)
+    }));
+    let light_from_world_f64 = light_from_world.as_dmat4();
+    let corners = |b: &Aabb| b.corners().map(|p| light_from_world_f64.transform_point3(p.as_dvec3()));
     let (nearest_m, farthest_m) = bounds_world
         .iter()
-        .filter(|b| cone.may_see(b))
-        .map(depth_of)
-        .fold((f32::INFINITY, 0.0f32), |(near, far), (least, most)| (near.min(least), far.max(most)));
+        .filter(|b| !b.is_empty())
+        .flat_map(|b| pyramid.common(corners(b)))
+        .map(|p| -p.z as f32)
+        .fold((f32::INFINITY, 0.0f32), |(near, far), along| (near.min(along), far.max(along)));
     if farthest_m <= 0.0 {
         return Err(FitError::NothingInReach);
     }
@@ -66,6 +74,8 @@ pub(super) fn pyramid(
         far_m,
         texel_m: 2.0 * tan_outer / options.size_texel as f32,
         perspective: true,
+        projection: Projection::Fitted,
+        fallback: None,
     })
 }
 
@@ -76,7 +86,9 @@ mod tests {
     use crate::lookup::locate;
     use glam::Vec3;
 
-    const OPTIONS: FitOptions = FitOptions { size_texel: 512, least_near: 1e-4, border_texel: 0.0 };
+    fn options() -> FitOptions {
+        FitOptions { size_texel: 512, ..FitOptions::default() }
+    }
 
     fn around(center: Vec3, half: f32) -> Aabb {
         Aabb { min: center - half, max: center + half }
@@ -87,7 +99,7 @@ mod tests {
         let light = Light::spot(Vec3::new(0.0, 10.0, 0.0), Vec3::ZERO, 0.3, 0.5);
         let seen =
             [around(Vec3::ZERO, 1.0), around(Vec3::new(0.0, 4.0, 0.0), 0.5), around(Vec3::X * 90.0, 1.0)];
-        let view = fit(&light, &seen, &OPTIONS).expect("three boxes, two in the cone");
+        let view = fit(&light, &seen, &options()).expect("three boxes, two in the cone");
         assert!(view.near_m <= 5.5 && view.near_m > 5.4, "near {}", view.near_m);
         assert!(view.far_m >= 11.0 && view.far_m < 11.1, "far {}", view.far_m);
         for corner in seen[0].corners() {
@@ -99,15 +111,15 @@ mod tests {
     #[test]
     fn a_light_inside_a_box_keeps_a_near_plane() {
         let light = Light::spot(Vec3::ZERO, Vec3::NEG_Y, 0.3, 0.5);
-        let view = fit(&light, &[around(Vec3::ZERO, 8.0)], &OPTIONS).expect("it is inside");
+        let view = fit(&light, &[around(Vec3::ZERO, 8.0)], &options()).expect("it is inside");
         assert!(view.near_m > 0.0 && view.near_m < 0.01 && view.far_m > 8.0, "{view:?}");
     }
 
     #[test]
     fn nothing_in_the_cone_is_said() {
         let light = Light::spot(Vec3::ZERO, Vec3::NEG_Y, 0.3, 0.5);
-        assert_eq!(fit(&light, &[around(Vec3::Y * 20.0, 1.0)], &OPTIONS), Err(FitError::NothingInReach));
-        assert_eq!(fit(&light, &[], &OPTIONS), Err(FitError::NothingInReach));
+        assert_eq!(fit(&light, &[around(Vec3::Y * 20.0, 1.0)], &options()), Err(FitError::NothingInReach));
+        assert_eq!(fit(&light, &[], &options()), Err(FitError::NothingInReach));
     }
 
     #[test]
@@ -117,7 +129,7 @@ mod tests {
             far_m: Some(30.0),
             ..Light::spot(Vec3::Y * 9.0, Vec3::ZERO, 0.3, 0.5)
         };
-        let view = fit(&light, &[around(Vec3::ZERO, 1.0)], &OPTIONS).expect("one box");
+        let view = fit(&light, &[around(Vec3::ZERO, 1.0)], &options()).expect("one box");
         assert_eq!((view.near_m, view.far_m), (1.0, 30.0));
     }
 
@@ -125,7 +137,7 @@ mod tests {
     fn any_scale_fits() {
         for scale in [1e-3f32, 1.0, 1e5] {
             let light = Light::spot(Vec3::Y * 10.0 * scale, Vec3::ZERO, 0.3, 0.5);
-            let view = fit(&light, &[around(Vec3::ZERO, scale)], &OPTIONS).expect("one box");
+            let view = fit(&light, &[around(Vec3::ZERO, scale)], &options()).expect("one box");
             assert!((view.far_m / scale - 11.0).abs() < 0.05, "{scale}: {view:?}");
             assert!(view.clip_from_world().is_finite(), "{scale}");
         }

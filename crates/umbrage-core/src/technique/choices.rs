@@ -136,6 +136,36 @@ choices! {
             summary: "the light's cone (or box), with near and far fitted to what is in it",
             ..EMPTY
         };
+        /// The part of that which the eye sees.
+        Adaptive = Choice {
+            id: "adaptive",
+            label: "Adaptive",
+            summary: "only what the eye sees of the light's cone (or box), each axis for itself; follows the eye",
+            modules: &["locate"],
+            source: Some(Source { paper: "Nagy, Real-Time Shadows on Complex Objects", year: 2000 }),
+            ..EMPTY
+        };
+        /// Warped as the eye's own perspective.
+        Perspective = Choice {
+            id: "perspective",
+            label: "Perspective",
+            summary: "a map in the space behind the eye's perspective, so that near things get more texels",
+            modules: &["locate"],
+            source: Some(Source { paper: "Stamminger and Drettakis, Perspective Shadow Maps", year: 2002 }),
+            ..EMPTY
+        };
+        /// Warped by a perspective across the light.
+        LightSpacePerspective = Choice {
+            id: "lispsm",
+            label: "Light-space perspective",
+            summary: "a perspective across the light whose strength evens out near and far errors",
+            modules: &["locate"],
+            source: Some(Source {
+                paper: "Wimmer, Scherzer and Purgathofer, Light Space Perspective Shadow Maps",
+                year: 2004,
+            }),
+            ..EMPTY
+        };
     }
 }
 
@@ -441,8 +471,19 @@ impl Combination {
         })
     }
 
-    /// Why the four do not go together; `None` when they do. So far all of them do.
+    /// Why the four do not go together; `None` when they do.
     pub fn objection(&self) -> Option<&'static str> {
+        let warped = matches!(self.projection, Projection::Perspective | Projection::LightSpacePerspective);
+        if warped && self.storage.is_color() {
+            return Some(
+                "colour storages hold distance along the light's axis, and a warped map's planes are planes of depth only",
+            );
+        }
+        if self.filter == Filter::MultiView && self.projection != Projection::Fitted {
+            return Some(
+                "each place of an area light would follow the eye in its own way; multiple views are fitted",
+            );
+        }
         None
     }
 

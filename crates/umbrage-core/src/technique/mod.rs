@@ -94,6 +94,9 @@ pub struct Technique {
 /// The technique that is used when none is named.
 pub const DEFAULT: &str = "linear";
 
+const STAMMINGER: Source = Source { paper: "Stamminger and Drettakis, Perspective Shadow Maps", year: 2002 };
+const WIMMER: Source =
+    Source { paper: "Wimmer, Scherzer and Purgathofer, Light Space Perspective Shadow Maps", year: 2004 };
 const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const INTEL: Source =
     Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
@@ -158,6 +161,22 @@ pub const TECHNIQUES: &[Technique] = &[
         family: Family::Map,
         source: Some(INTEL),
         combination: Some(Combination { storage: Storage::Packed3, ..LINEAR }),
+    },
+    Technique {
+        id: "perspective",
+        label: "Perspective shadow map",
+        summary: "the map is warped as the eye's picture is, so that near surfaces get more texels; redrawn when the eye moves",
+        family: Family::Map,
+        source: Some(STAMMINGER),
+        combination: Some(Combination { projection: Projection::Perspective, ..LINEAR }),
+    },
+    Technique {
+        id: "lispsm",
+        label: "Light-space perspective map",
+        summary: "the warp is laid across the light instead of along the eye: gentler, and good from more directions",
+        family: Family::Map,
+        source: Some(WIMMER),
+        combination: Some(Combination { projection: Projection::LightSpacePerspective, ..LINEAR }),
     },
     Technique {
         id: "multi-view",
