@@ -137,14 +137,14 @@ fn technique_json(technique: &Technique) -> Value {
         let pairs = Settings::CHOICES.iter().zip(combination.rows());
         pairs.map(|(key, row)| ((*key).to_owned(), row.id.into())).collect::<serde_json::Map<String, Value>>()
     });
-    let params: Vec<Value> = technique
-        .combination
+    let settings = Settings::new(technique.id, []).ok();
+    let params: Vec<Value> = settings
         .iter()
-        .flat_map(|combination| {
-            combination.params().map(|param| {
+        .flat_map(|settings| {
+            settings.params().map(|param| {
                 let mut entry = json!(ParamJson::from(param));
-                if let ParamDefault::Derived { value, .. } = param.default {
-                    entry["default"] = json::decimal(value(combination)).into();
+                if let ParamDefault::Derived { .. } = param.default {
+                    entry["default"] = settings.value(param.name).map(json::decimal).into();
                 }
                 entry
             })

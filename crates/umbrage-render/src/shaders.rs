@@ -170,34 +170,38 @@ pub fn screen(needs: &ShaderNeeds) -> String {
     [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }].join("\n")
 }
 
-/// Every shader that the renderer can make, with a name: for validation.
+/// Every shader that the renderer can make, with a name: for validation. Combinations and kinds of scenes do not touch each other,
+/// so each combination is joined with one kind, and each kind with the default; texts that are the same come once.
 #[cfg(test)]
-pub fn all() -> Vec<(String, String)> {
-    let mut all = Vec::new();
-    let mut combinations: Vec<Option<Combination>> = Combination::all().map(Some).collect();
-    combinations.push(None);
-    for combination in combinations {
+pub fn all() -> std::collections::BTreeMap<String, String> {
+    let needs = |combination, lights: usize, metallic_roughness, blinn| ShaderNeeds {
+        combination,
+        given: combination.is_none() && lights == 1,
+        metallic_roughness,
+        blinn,
+        placed: lights != 1,
+        slide: lights > 1,
+        lights,
+        point: lights > 1,
+        places: lights > WRITTEN_OUT,
+        deform: None,
+        kernel: None,
+    };
+    let mut wanted: Vec<ShaderNeeds> =
+        Combination::all().map(|combination| needs(Some(combination), 2, true, false)).collect();
+    let default = umbrage::core::technique::find(umbrage::core::technique::DEFAULT).expect("the default");
+    for combination in [None, default.combination] {
         for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
-                let needs = ShaderNeeds {
-                    combination,
-                    given: combination.is_none() && lights == 1,
-                    metallic_roughness,
-                    blinn,
-                    placed: lights != 1,
-                    slide: lights > 1,
-                    lights,
-                    point: lights > 1,
-                    places: lights > WRITTEN_OUT,
-                    deform: None,
-                    kernel: None,
-                };
-                all.push((format!("mesh for {needs:?}"), mesh(&needs)));
-                all.push((format!("screen for {needs:?}"), screen(&needs)));
+                wanted.push(needs(combination, lights, metallic_roughness, blinn));
             }
         }
     }
-    all
+    let both = |needs: &ShaderNeeds| {
+        [(mesh(needs), format!("mesh for {needs:?}")), (screen(needs), format!("screen for {needs:?}"))]
+    };
+    let texts: std::collections::HashMap<String, String> = wanted.iter().flat_map(both).collect();
+    texts.into_iter().map(|(text, name)| (name, text)).collect()
 }
 
 #[cfg(test)]

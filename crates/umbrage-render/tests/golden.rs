@@ -6,7 +6,7 @@ use common::compare::{check, check_differs, differences};
 use common::scenes::{builtin, checker, cut_out, over_floor, sheet, sun_of, with_light};
 use common::{gpu, settings, shoot, shoot_with};
 use glam::{Mat4, Vec3};
-use umbrage_render::umbrage::core::technique::{Bias, Filter, Projection, Storage};
+use umbrage_render::umbrage::core::technique::{Bias, Combination, Filter, Projection, Storage};
 use umbrage_render::umbrage::core::wgsl::assemble;
 use umbrage_render::umbrage::core::{Camera, Light, LightKind};
 use umbrage_render::{RenderOptions, View};
@@ -91,7 +91,119 @@ fn bias_constant() {
 
 #[test]
 fn bias_slope() {
-    visibility("bias-slope", &builtin("contact"), "linear", &[("map_size", "256")]);
+    visibility("bias-slope", &builtin("contact"), "linear", &[("bias", "slope"), ("map_size", "256")]);
+}
+
+/// The map of `bias_none_shows_acne`, with nothing to set and no acne.
+#[test]
+fn bias_auto() {
+    visibility("bias-auto", &builtin("contact"), "linear", &[("map_size", "128")]);
+}
+
+#[test]
+fn bias_normal() {
+    visibility("bias-normal", &builtin("contact"), "linear", &[("bias", "normal"), ("map_size", "256")]);
+}
+
+/// Floor and wall are both lit where they meet, and darken each other: the receiver's plane alone is not enough.
+#[test]
+fn bias_receiver_plane() {
+    let Some(gpu) = gpu() else { return };
+    let shot = |bias| {
+        let settings = settings("linear", &[("bias", bias), ("map_size", "128")]);
+        shoot(&gpu, &builtin("contact"), settings, View::Visibility, 128)
+    };
+    check_differs("bias-receiver-plane", &shot("auto"), "the automatic bias");
+    check("bias-receiver-plane", &shot("receiver-plane"));
+}
+
+#[test]
+fn pcf() {
+    visibility("pcf", &builtin("torus"), "pcf", &[("map_size", "128")]);
+}
+
+#[test]
+fn kernel() {
+    visibility("kernel", &builtin("torus"), "kernel", &[("map_size", "128"), ("width", "7")]);
+}
+
+#[test]
+fn a_kernel_of_one_s_own() {
+    let scene = builtin("torus");
+    let Some(gpu) = gpu() else { return };
+    let shot = |kernel: Option<&str>| {
+        let settings = settings("kernel", &[("map_size", "128"), ("width", "7")]);
+        let kernel = kernel.map(std::sync::Arc::from);
+        let view = View::Visibility;
+        shoot_with(&gpu, &scene, 96, RenderOptions { kernel, view, ..RenderOptions::new(settings) })
+    };
+    check_differs("own-kernel", &shot(None), "the bell");
+    // Two streaks across each other.
+    let own = "fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) -> vec4f {
+    return max(vec4f(1.0) - abs(right), vec4f(0.0)) + max(vec4f(1.0) - abs(down), vec4f(0.0));
+}";
+    check("own-kernel", &shot(Some(own)));
+}
+
+#[test]
+fn multi_view() {
+    let scene = builtin("torus");
+    let ball = umbrage_render::umbrage::core::LightShape::Sphere { radius_m: 0.35 };
+    let light = Light { shape: ball, ..scene.lights[0].light };
+    visibility("multi-view", &with_light(scene, light), "multi-view", &[("map_size", "128")]);
+}
+
+#[test]
+fn r32f() {
+    visibility("r32f", &builtin("columns"), "linear", &[("storage", "r32f"), ("map_size", "512")]);
+}
+
+/// 256 steps of distance are too few, even for a bias that knows of them: shadows begin late.
+#[test]
+fn packed1() {
+    visibility("packed1", &builtin("columns"), "linear", &[("storage", "packed1"), ("map_size", "512")]);
+}
+
+#[test]
+fn packed2() {
+    visibility("packed2", &builtin("columns"), "linear", &[("storage", "packed2"), ("map_size", "512")]);
+}
+
+#[test]
+fn packed3() {
+    visibility("packed3", &builtin("columns"), "packed", &[("map_size", "512")]);
+}
+
+#[test]
+fn point_light() {
+    let scene = builtin("torus");
+    let place = Vec3::new(0.0, 2.5, 1.5);
+    let point = Light { kind: LightKind::Point, position_world: place, ..scene.lights[0].light };
+    visibility("point", &with_light(scene, point), "pcf", &[("map_size", "256")]);
+}
+
+/// A user's own function sways the scene; map and picture move alike.
+#[test]
+fn deformed_casters() {
+    let scene = builtin("columns");
+    let Some(gpu) = gpu() else { return };
+    let shot = |time_s: f32| {
+        let sway = "fn umbrage_deform(p_world: vec3f, p_object: vec3f, time_s: f32) -> vec3f {
+    return p_world + vec3f(0.2 * p_world.y * sin(p_world.z + time_s), 0.0, 0.0);
+}";
+        let deform = Some(std::sync::Arc::from(sway));
+        let (view, deform_reach_m) = (View::Visibility, 1.2);
+        let options = RenderOptions {
+            deform,
+            deform_reach_m,
+            time_s,
+            view,
+            ..RenderOptions::new(settings("linear", &[]))
+        };
+        shoot_with(&gpu, &scene, 128, options)
+    };
+    check_differs("deformed", &shot(0.0), "another moment");
+    check("deformed", &shot(1.5));
 }
 
 #[test]
@@ -279,9 +391,11 @@ fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {
     Projection::ALL.iter().for_each(|p| golden(format!("projection-{}", p.row().id)));
     for filter in Filter::ALL {
         golden(filter.row().id.to_owned());
-        let text = assemble(filter.row().modules).expect("modules of a filter");
-        let function = format!("fn umbrage_filter_{}(", filter.row().id);
-        assert!(text.contains(&function), "no module of {} has {function}", filter.row().id);
+    }
+    for combination in Combination::all() {
+        let text = assemble(&combination.modules()).expect("modules of a combination");
+        let function = format!("fn {}(", combination.filter_function());
+        assert!(text.contains(&function), "no module of {combination:?} has {function}");
     }
 }
 

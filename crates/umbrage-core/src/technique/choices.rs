@@ -366,10 +366,10 @@ const SLOPE_FACTOR: Param = Param {
     max: 32.0,
     step: 0.1,
     default: ParamDefault::Derived {
-        rule: "twice the filter's reach: 1 for nearest, 2 for linear",
+        rule: "twice the filter's reach: 1 for nearest, 2 for linear, width + 1 for wider ones",
         // A texel that counts lies at most `reach` away along both axes, so a plane's depth there differs by at most
         // reach * (|dz/dx| + |dz/dy|), and the hardware's slope is the larger of the two.
-        value: |combination| 2.0 * combination.reach_texel(5.0),
+        value: |reach_texel| 2.0 * reach_texel,
     },
     help: "how many times a triangle's depth slope, for each texel, the map is pushed away from the light",
     cost: "none; too much detaches the shadow from a caster on a steep receiver",
@@ -499,9 +499,7 @@ impl Combination {
 
     /// Is the comparison left to the hardware's comparison sampler? It has one depth for all texels, and depth textures only.
     pub fn compares_in_hardware(&self) -> bool {
-        matches!(self.filter, Filter::Linear | Filter::MultiView)
-            && !self.storage.is_color()
-            && self.compare_module() == "compare/plain"
+        self.filter == Filter::Linear && !self.storage.is_color() && self.compare_module() == "compare/plain"
     }
 
     fn compare_module(&self) -> &'static str {

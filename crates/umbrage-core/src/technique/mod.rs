@@ -50,8 +50,8 @@ pub enum ParamDefault {
     Derived {
         /// How, in words.
         rule: &'static str,
-        /// How, in numbers.
-        value: fn(&Combination) -> f32,
+        /// How, in numbers: from the filter's reach, texels.
+        value: fn(f32) -> f32,
     },
 }
 
@@ -228,7 +228,7 @@ mod tests {
             for param in combination.params() {
                 let value = match param.default {
                     ParamDefault::Fixed(value) => value,
-                    ParamDefault::Derived { value, .. } => value(&combination),
+                    ParamDefault::Derived { value, .. } => value(combination.reach_texel(5.0)),
                 };
                 assert!((param.min..=param.max).contains(&value), "{}: {value}", param.name);
                 assert!(

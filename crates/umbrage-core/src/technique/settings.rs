@@ -127,7 +127,7 @@ impl Settings {
         let set = self.set.iter().find(|(key, _)| *key == name).map(|(_, value)| *value);
         Some(set.unwrap_or_else(|| match param.default {
             ParamDefault::Fixed(value) => value,
-            ParamDefault::Derived { value, .. } => value(&combination),
+            ParamDefault::Derived { value, .. } => value(self.reach_texel()),
         }))
     }
 
@@ -226,10 +226,14 @@ mod tests {
         let slope = |id, pairs: &[(&str, &str)]| {
             Settings::new(id, pairs.iter().copied()).expect("valid").value("slope_factor")
         };
-        assert_eq!(slope("hard", &[]), Some(1.0));
-        assert_eq!(slope("linear", &[]), Some(2.0));
-        assert_eq!(slope("linear", &[("filter", "nearest")]), Some(1.0));
-        assert_eq!(slope("linear", &[("slope_factor", "3.5")]), Some(3.5));
+        let by_slope = ("bias", "slope");
+        assert_eq!(slope("linear", &[]), None, "what is automatic has nothing to set");
+        assert_eq!(slope("hard", &[by_slope]), Some(1.0));
+        assert_eq!(slope("linear", &[by_slope]), Some(2.0));
+        assert_eq!(slope("linear", &[by_slope, ("filter", "nearest")]), Some(1.0));
+        assert_eq!(slope("pcf", &[by_slope]), Some(6.0));
+        assert_eq!(slope("pcf", &[by_slope, ("width", "9")]), Some(10.0));
+        assert_eq!(slope("linear", &[by_slope, ("slope_factor", "3.5")]), Some(3.5));
         assert_eq!(slope("matrix-bias", &[]), None);
         assert_eq!(slope("unshadowed", &[]), None);
     }
@@ -251,7 +255,10 @@ mod tests {
             let message = refused("linear", &[("map_size", bad)]);
             assert!(message.contains("whole number from 1 to 16384 (texel)"), "{bad}: {message}");
         }
-        assert!(refused("linear", &[("constant", "1"), ("constant", "2")]).contains("twice"));
+        assert!(
+            refused("linear", &[("bias", "constant"), ("constant", "1"), ("constant", "2")])
+                .contains("twice")
+        );
         assert!(refused("linear", &[("bias", "none"), ("bias", "slope")]).contains("twice"));
     }
 }
