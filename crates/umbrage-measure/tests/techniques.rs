@@ -165,7 +165,7 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
     let small = ("map_size", "256");
     let biases: Vec<String> = (0..12).map(|i| format!("{}", 1e-4 * f64::from(1 << i))).collect();
     let uniform = biases.iter().map(|bias| settings("matrix-bias", &[small, ("matrix_bias", bias)]));
-    let techniques = std::iter::once(settings("linear", &[small])).chain(uniform).collect();
+    let techniques = std::iter::once(settings("linear", &[small, ("bias", "slope")])).chain(uniform).collect();
     // Large enough that a texel is some pixels and the shadows are some texels wide.
     let mut plan = plan(&scene, techniques);
     plan.options.size = UVec2::splat(4 * SIDE);
@@ -174,10 +174,10 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
     let (bias, uniform) = biases
         .iter()
         .zip(&found.rows[1..])
-        .find(|(_, row)| row.errors.acne <= slope.errors.acne)
+        .find(|(_, row)| row.errors.false_shadow <= slope.errors.false_shadow)
         .expect("some uniform bias is large enough");
     let receivers = found.views[0].receivers;
-    for (name, row) in [("slope-scaled", slope), ("least uniform without more acne", uniform)] {
+    for (name, row) in [("slope-scaled", slope), ("least uniform without more false shadow", uniform)] {
         println!(
             "{name}: {} of {} sure pixels leak, gap {:.4} m, false light {:.3} %, false shadow {:.3} %",
             pixels(row, row.errors.leak, receivers),
@@ -188,12 +188,8 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
         );
     }
     println!("the uniform bias is {bias} of the depth range");
-    // Biases are tried in steps of two, so the one found may be too small by a hair for a gap.
-    assert!(uniform.errors.leak > slope.errors.leak && uniform.gap_m >= slope.gap_m);
-    assert!(
-        uniform.errors.false_light > 1.1 * slope.errors.false_light
-            && uniform.errors.false_shadow > 1.5 * slope.errors.false_shadow
-    );
+    assert!(uniform.errors.leak > slope.errors.leak && uniform.gap_m > slope.gap_m);
+    assert!(uniform.errors.false_light > 1.5 * slope.errors.false_light);
 }
 
 /// A light with a shape: maps of today are hard, so their edges are too narrow, and the truth says so.
