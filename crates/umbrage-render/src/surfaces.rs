@@ -23,6 +23,20 @@ fn unpack_normal(packed: u32) -> Vec3 {
 }
 
 impl Renderer<'_> {
+    /// What the map of a view holds after a frame: its texels' bytes as the format has them, rows from the top.
+    ///
+    /// # Errors
+    /// [`RenderError::View`] when there is no such map, or when its format cannot be copied (24-bit depth);
+    /// [`RenderError::Gpu`] when the device is lost.
+    pub fn map_bytes(&self, view: usize) -> Result<Vec<u8>, RenderError> {
+        let shadows = self.shadows.as_ref().filter(|_| view < self.views().len());
+        let Some(shadows) = shadows else { return Err(RenderError::View(format!("there is no map {view}"))) };
+        if shadows.format.format == wgpu::TextureFormat::Depth24Plus {
+            return Err(RenderError::View("24-bit depth cannot be copied; set storage=depth32f".into()));
+        }
+        readback::layer(self.gpu, shadows.maps.texture(), view as u32)
+    }
+
     /// The surface in each pixel after a frame, rows from the top; `None` where nothing is. Surfaces that are mixed by alpha
     /// are not among them.
     ///

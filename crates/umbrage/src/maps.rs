@@ -44,8 +44,8 @@ impl ShadowMaps {
             })
         };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let texture =
-            make("umbrage shadow maps", layers, format.format, drawn | wgpu::TextureUsages::TEXTURE_BINDING);
+        let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let texture = make("umbrage shadow maps", layers, format.format, drawn | read);
         let scratch = is_color
             .then(|| make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default()));
         let aspect = if is_color { wgpu::TextureAspect::All } else { wgpu::TextureAspect::DepthOnly };
@@ -80,6 +80,11 @@ impl ShadowMaps {
     /// The depth that colour maps are drawn with; `None` where the map is depth itself.
     pub fn scratch(&self) -> Option<&wgpu::TextureView> {
         self.scratch.as_ref()
+    }
+
+    /// All layers, to copy from.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.texture
     }
 
     /// Width and height of a map, texels.
