@@ -156,6 +156,20 @@ pub struct SceneArgs {
     #[arg(long, help_heading = "Machine")]
     pub all_casters: bool,
 
+    /// A file with a WGSL function that moves every vertex, in maps and pictures: fn umbrage_deform(p_world: vec3f, p_object:
+    /// vec3f, time_s: f32) -> vec3f. It is told --time
+    #[arg(long, value_name = "FILE", help_heading = "Scene")]
+    pub deform: Option<PathBuf>,
+
+    /// How far --deform may move a vertex, metres: what is culled and fitted keeps so much room
+    #[arg(long, value_name = "METRES", value_parser = specs::length, default_value = "0", requires = "deform", help_heading = "Scene")]
+    pub deform_reach: f32,
+
+    /// A file with the weights of the filter `kernel`: fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) -> vec4f, of
+    /// four texels whose centres lie so many texels from the receiver; view.width_texel is the parameter `width`
+    #[arg(long, value_name = "FILE", help_heading = "Picture")]
+    pub kernel: Option<PathBuf>,
+
     /// Use the first graphics adapter whose name contains this; `umbrage doctor` lists them
     #[arg(long, value_name = "NAME", env = "UMBRAGE_ADAPTER", help_heading = "Machine")]
     pub adapter: Option<String>,

@@ -123,7 +123,7 @@ fn renderer<'a>(
     gpu: &'a Gpu,
     settings: &Settings,
 ) -> Result<Renderer<'a>, Fault> {
-    let options = setup::options(&args.scene, stage, settings.clone());
+    let options = setup::options(&args.scene, stage, settings.clone())?;
     Ok(Renderer::new(gpu, &stage.scene, &stage.camera, options)?)
 }
 

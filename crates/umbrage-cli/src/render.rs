@@ -23,7 +23,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
     let options = RenderOptions {
         view,
         shown_light: args.light_index,
-        ..setup::options(&args.scene, &stage, settings)
+        ..setup::options(&args.scene, &stage, settings)?
     };
 
     let start = Instant::now();

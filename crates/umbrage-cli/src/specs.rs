@@ -168,6 +168,11 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     number(text).map_err(|_| "it must be a number of seconds, for example 0.5".into())
 }
 
+/// Metres, 0 or more.
+pub fn length(text: &str) -> Result<f32, String> {
+    number(text).ok().filter(|x| *x >= 0.0).ok_or_else(|| "it must be a number of metres, 0 or more".into())
+}
+
 /// A number from 0 to 1.
 pub fn share(text: &str) -> Result<f32, String> {
     number(text)

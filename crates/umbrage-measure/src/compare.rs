@@ -14,7 +14,7 @@ use std::time::Instant;
 use umbrage_render::picture::encode_png;
 use umbrage_render::umbrage::core::Camera;
 use umbrage_render::umbrage::core::technique::Settings;
-use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View};
+use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View, deformed};
 use umbrage_scene::{Scene, SceneLight};
 use umbrage_truth::{Errors, Frame, Quality, Rays, flicker, flip};
 
@@ -142,7 +142,8 @@ pub fn compare(
     let steps = (scene.lights.len() * frames * (1 + plan.techniques.len())).max(1) as f32;
     progress_to(progress, "building the ray hierarchy", 0.0)?;
     let start = Instant::now();
-    let rays = Rays::new(scene)?;
+    let moved = deformed(gpu, scene, &plan.options)?;
+    let rays = Rays::new(&moved)?;
     let build_s = start.elapsed().as_secs_f64();
     let mut made = Comparison {
         truth: TruthSummary { samples: 1, ..TruthSummary::default() },

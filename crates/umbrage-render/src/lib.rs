@@ -3,6 +3,7 @@
 //! A frame is [`Renderer::frame`]; everything before it is in [`Renderer::new`]. Surfaces go into a G-buffer of one
 //! texel a pixel and are lit once each, so a scene of many small triangles pays for its light by the pixel.
 
+mod deform;
 mod draw_list;
 mod error;
 mod exposure;
@@ -13,6 +14,7 @@ mod layout;
 mod lights;
 mod materials;
 mod options;
+mod own_wgsl;
 pub mod picture;
 mod pipelines;
 mod readback;
@@ -23,6 +25,7 @@ mod targets;
 mod textures;
 mod timing;
 
+pub use deform::deformed;
 pub use draw_list::Work;
 pub use error::RenderError;
 pub use frame::{FrameReport, PassReport};

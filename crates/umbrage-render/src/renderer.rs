@@ -11,7 +11,7 @@ use crate::pipelines::{Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
 use crate::targets::Targets;
 use crate::textures::Textures;
-use crate::{RenderError, exposure};
+use crate::{RenderError, exposure, own_wgsl};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
 use umbrage::caster::{GpuCasterView, NO_DEFORM};
@@ -77,6 +77,8 @@ impl<'a> Renderer<'a> {
         let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
 
         check_given(scene, &options)?;
+        options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
+        options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
         let format = choose_format(storage, |format| gpu.usages_of(format))?;
