@@ -187,7 +187,10 @@ pub fn all() -> Vec<(String, String)> {
     let mut combinations: Vec<Option<Combination>> = Combination::all().map(Some).collect();
     combinations.push(None);
     for combination in combinations {
-        for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
+        let surfaces = [(true, true), (true, false), (false, true)];
+        // What a surface answers does not depend on what translucent casters do.
+        let different = if combination.is_some_and(|c| c.colors_light()) { 1 } else { surfaces.len() };
+        for (metallic_roughness, blinn) in surfaces.into_iter().take(different) {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
                 let needs = ShaderNeeds {
                     combination,

@@ -91,7 +91,7 @@ pub fn cut_out(alpha: AlphaMode) -> Scene {
 }
 
 /// Panes of coloured glass over the floor: a red and a green one that overlap in the light, the green one with a picture of squares;
-/// a blue one wholly in the shadow of a box, and a yellow one whose half the box hides.
+/// a violet one above a part of an opaque sheet, a blue one wholly in the sheet's shadow, and a yellow one half in it.
 pub fn panes() -> Scene {
     let glass = |color: [f32; 4]| Material {
         alpha: AlphaMode::Blend,
@@ -111,16 +111,18 @@ pub fn panes() -> Scene {
         Material { base_color_texture: Some(squares), ..glass([0.1, 1.0, 0.2, 0.5]) },
         glass([0.1, 0.2, 1.0, 0.5]),
         glass([1.0, 0.9, 0.1, 0.4]),
+        glass([0.8, 0.2, 1.0, 0.5]),
         Material::default(),
     ];
-    let flat = |center: Vec3, half: f32, material| sheet(center, Vec3::X * half, Vec3::NEG_Z * half, material);
+    let flat =
+        |center: Vec3, half: f32, material| sheet(center, Vec3::X * half, Vec3::NEG_Z * half, material);
     let meshes = vec![
         flat(Vec3::new(-1.3, 1.0, 0.6), 0.8, 0),
         flat(Vec3::new(-0.9, 1.5, 0.2), 0.8, 1),
         flat(Vec3::new(1.3, 0.4, -0.6), 0.35, 2),
         flat(Vec3::new(1.6, 0.8, 0.6), 0.6, 3),
-        // An opaque sheet above the blue pane and a half of the yellow one.
-        flat(Vec3::new(0.9, 1.5, -0.2), 0.8, 4),
+        flat(Vec3::new(0.5, 2.0, -0.3), 0.4, 4),
+        flat(Vec3::new(0.9, 1.5, -0.2), 0.8, 5),
     ];
     let placed: Vec<_> = (0..meshes.len()).map(|mesh| (mesh, Mat4::IDENTITY)).collect();
     over_floor(materials, vec![checker(64, 40)], meshes, &placed)
