@@ -388,7 +388,7 @@ pub struct TechniquesArgs {
     #[arg(long)]
     pub json: bool,
 
-    /// Print every combination of the four choices of a map, and whether it is valid
+    /// Print every combination of the five choices of a map, and whether it is valid
     #[arg(long)]
     pub matrix: bool,
 }

@@ -27,6 +27,10 @@ fn describe(pass: &Pass) -> serde_json::Value {
         Target::Map { storage, size_texel } => {
             json!({ "kind": "map", "storage": storage.row().id, "size_texel": size_texel })
         }
+        Target::TranslucentMap { storage, size_texel } => {
+            json!({ "kind": "translucent-map", "storage": storage.row().id, "size_texel": size_texel })
+        }
+        Target::Colors { size_texel } => json!({ "kind": "colors", "size_texel": size_texel }),
         Target::Picture => json!({ "kind": "picture" }),
     };
     json!({
@@ -35,8 +39,16 @@ fn describe(pass: &Pass) -> serde_json::Value {
         "target": target,
         "clear_depth": json::decimal(pass.clear_depth),
         "color": pass.color,
-        "cull": match pass.cull { Cull::BackOfClosed => "back-of-closed", Cull::ByMaterial => "by-material" },
+        "cull": match pass.cull {
+            Cull::BackOfClosed => "back-of-closed",
+            Cull::Nothing => "nothing",
+            Cull::ByMaterial => "by-material",
+        },
         "polygon_offset": { "constant": pass.offset.constant, "slope": json::decimal(pass.offset.slope) },
-        "draws": match pass.draws { Draws::Casters => "casters", Draws::Surfaces => "surfaces" },
+        "draws": match pass.draws {
+            Draws::Casters => "casters",
+            Draws::Translucent => "translucent",
+            Draws::Surfaces => "surfaces",
+        },
     })
 }

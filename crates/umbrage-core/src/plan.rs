@@ -16,6 +16,19 @@ pub enum Target {
         /// Width and height, texels.
         size_texel: u32,
     },
+    /// The light's layer of a second map array of the same kind, which holds translucent casters only.
+    TranslucentMap {
+        /// How depth is kept.
+        storage: Storage,
+        /// Width and height, texels.
+        size_texel: u32,
+    },
+    /// The light's layer of the array of colours; the depth of its map is tested and left as it is. Each caster multiplies
+    /// what is there by the share of light that it lets through.
+    Colors {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
     /// The caller's picture and its depth.
     Picture,
 }
@@ -25,6 +38,9 @@ pub enum Target {
 pub enum Draws {
     /// All that blocks light, positions only (and texture coordinates where the surface is cut out).
     Casters,
+    /// What blocks light in part: surfaces mixed by alpha, where the technique lets them colour the light. Its casters are then
+    /// without them.
+    Translucent,
     /// All that is seen, with material and light; visibility is looked up inline.
     Surfaces,
 }
@@ -35,6 +51,8 @@ pub enum Cull {
     /// Back faces of casters that are closed and wholly in front of the light: what they block, their front faces
     /// block too. All faces of all others, because a surface blocks light whichever way it faces.
     BackOfClosed,
+    /// None: light passes both sides of a bottle.
+    Nothing,
     /// As each material says.
     ByMaterial,
 }
@@ -94,7 +112,25 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
-            vec![map, lighting]
+            if !combination.colors_light() {
+                return vec![map, lighting];
+            }
+            let size_texel = settings.map_size_texel();
+            let colors = Pass {
+                name: "light-colors",
+                target: Target::Colors { size_texel },
+                color: true,
+                cull: Cull::Nothing,
+                draws: Draws::Translucent,
+                ..map.clone()
+            };
+            let nearest = Pass {
+                name: "translucent-map",
+                target: Target::TranslucentMap { storage: combination.storage, size_texel },
+                color: false,
+                ..colors.clone()
+            };
+            vec![map, colors, nearest, lighting]
         }
         _ => vec![lighting],
     }
@@ -121,31 +157,46 @@ fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
 impl std::fmt::Display for Pass {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let target = match self.target {
-            Target::Map { storage, size_texel } => {
+            Target::Map { storage, size_texel } | Target::TranslucentMap { storage, size_texel } => {
                 let format = if storage == Storage::Auto {
                     "of the adapter's best depth format"
                 } else {
                     storage.row().id
                 };
-                format!("{size_texel}x{size_texel} {format}, the light's layer")
+                let of =
+                    if self.draws == Draws::Translucent { " of the translucent casters' array" } else { "" };
+                format!("{size_texel}x{size_texel} {format}, the light's layer{of}")
+            }
+            Target::Colors { size_texel } => {
+                format!("{size_texel}x{size_texel} rgba8unorm, the light's layer")
             }
             Target::Picture => "the picture and its depth".to_owned(),
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
             Cull::BackOfClosed => "back faces of closed casters culled",
+            Cull::Nothing => "no faces culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
         let draws = match self.draws {
             Draws::Casters => "casters, positions only; cut-out casters with their texture",
+            Draws::Translucent => "translucent casters with base colour, texture and alpha",
             Draws::Surfaces => {
                 "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
             }
         };
-        let color = if self.color { "colour and depth" } else { "depth only" };
+        let is_colors = matches!(self.target, Target::Colors { .. });
+        let color = match self.color {
+            true if is_colors => "colours multiplied, depth of the light's map read only",
+            true => "colour and depth",
+            false => "depth only",
+        };
         writeln!(f, "{}{}", self.name, if self.per_light { " (one for each shadowed light)" } else { "" })?;
         writeln!(f, "  target  {target}")?;
-        writeln!(f, "  clear   depth {}", self.clear_depth)?;
+        match self.target {
+            Target::Colors { .. } => writeln!(f, "  clear   white")?,
+            _ => writeln!(f, "  clear   depth {}", self.clear_depth)?,
+        }
         write!(f, "  state   {color}, depth {compare}, {cull}")?;
         if self.offset != PolygonOffset::default() {
             write!(f, ", polygon offset slope {} constant {}", self.offset.slope, self.offset.constant)?;
@@ -167,6 +218,22 @@ mod tests {
             assert_eq!(passes.last().map(|p| p.draws), Some(Draws::Surfaces), "{}", technique.id);
             assert_eq!(passes.len() > 1, technique.family == Family::Map, "{}", technique.id);
         }
+    }
+
+    #[test]
+    fn coloured_light_takes_two_passes_more_and_says_so() {
+        let passes = plan(&Settings::new("colored", []).expect("valid"));
+        let draws: Vec<_> = passes.iter().map(|p| p.draws).collect();
+        assert_eq!(draws, [Draws::Casters, Draws::Translucent, Draws::Translucent, Draws::Surfaces]);
+        // What is tested against the map must be drawn with its offset.
+        assert!(passes[..3].iter().all(|p| p.offset == passes[0].offset && p.per_light));
+        let text = passes[1].to_string();
+        assert!(
+            text.contains("rgba8unorm") && text.contains("multiplied") && text.contains("clear   white"),
+            "{text}"
+        );
+        let cut = Settings::new("colored", [("translucent", "cut")]).expect("valid");
+        assert_eq!(plan(&cut), plan(&Settings::new("linear", []).expect("valid")));
     }
 
     #[test]

@@ -299,8 +299,7 @@ impl<'a> Shot<'a> {
                 warnings.push(warning.clone());
             }
         }
-        let v = renderer.visibility()?.into_iter().map(Vec3::splat).collect();
-        Ok(Answer { v, views: renderer.views().to_vec() })
+        Ok(Answer { v: renderer.visibility_rgb()?, views: renderer.views().to_vec() })
     }
 
     /// The final picture with the truth's V.

@@ -54,7 +54,7 @@ impl Cost {
         let costs: Vec<f64> = shadowed.iter().zip(&bare).map(|(with, without)| with - without).collect();
         // A pass of the plan has one name, followed by the view's number where each view has its own.
         let planned: Vec<_> =
-            plan(settings).into_iter().filter(|pass| pass.draws == Draws::Casters).collect();
+            plan(settings).into_iter().filter(|pass| pass.draws != Draws::Surfaces).collect();
         let of_casters = |name: &str| planned.iter().any(|pass| name.starts_with(pass.name));
         let casters: Vec<_> = report.passes.iter().filter(|pass| of_casters(&pass.name)).collect();
         let side = u64::from(settings.map_size_texel());
@@ -74,7 +74,7 @@ impl Cost {
             passes: casters.len() as u64,
             draws: casters.iter().map(|pass| pass.work.draws).sum(),
             triangles: casters.iter().map(|pass| pass.work.triangles).sum(),
-            texels: with.views().len() as u64 * side * side,
+            texels: casters.len() as u64 * side * side,
             taps: u64::from(settings.taps() * settings.places()),
             pass_names: report.passes.iter().map(|pass| pass.name.clone()).collect(),
         })

@@ -1,5 +1,10 @@
 //! Shadow maps against ray-traced truth, through the same comparison that users run.
 
+/// The scenes of the renderer's own tests.
+#[path = "../../umbrage-render/tests/common/scenes.rs"]
+#[allow(dead_code, reason = "its other scenes are for goldens")]
+mod scenes;
+
 use glam::{UVec2, Vec3};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, OnceLock};
@@ -261,4 +266,45 @@ fn it_stops_when_asked_and_counts_what_does_not_vary() {
             && row.cost.frame_ms > 0.0
     );
     assert!(last.into_inner() >= 50);
+}
+
+/// Row F4: light through panes. The technique that colours it must be far nearer to the truth than the one that cuts it, under every
+/// kind of light, and no worse where no pane is in the way.
+#[test]
+fn coloured_light_is_near_the_truth() {
+    let Some(gpu) = gpu() else { return };
+    let panes = scenes::panes();
+    let spot = panes.lights[0].light;
+    let point = Light { kind: LightKind::Point, ..spot };
+    for (name, light) in [("spot", spot), ("sun", sun_of(&panes)), ("point", point)] {
+        let scene = with_light(panes.clone(), light);
+        let techniques = vec![
+            settings("linear", &[MAP]),
+            settings("colored", &[MAP]),
+            settings("colored", &[MAP, ("storage", "packed3"), ("filter", "pcf")]),
+        ];
+        let found = measured(&gpu, &scene, techniques);
+        let receivers = found.views[0].receivers;
+        for row in &found.rows {
+            println!(
+                "{name} {} {}: rmse {:.4}, {} acne, {} leak of {} sure, {} passes, {} bytes",
+                row.technique,
+                row.params["filter"],
+                row.errors.rmse,
+                row.errors.acne_pixels,
+                row.errors.leak_pixels,
+                pixels(row, 1.0, receivers),
+                row.cost.passes,
+                row.cost.memory_bytes
+            );
+        }
+        let [linear, colored, packed] = found.rows.as_slice() else { panic!("three rows") };
+        for row in [colored, packed] {
+            assert!(3.0 * row.errors.rmse < linear.errors.rmse, "{name}: {}", row.errors.rmse);
+            assert!(row.errors.acne_pixels <= linear.errors.acne_pixels, "{name}");
+            assert!(row.errors.leak_pixels <= linear.errors.leak_pixels, "{name}");
+            assert_eq!(row.cost.passes, 3 * linear.cost.passes, "{name}");
+        }
+        assert_eq!(colored.cost.memory_bytes, 3 * linear.cost.memory_bytes, "{name}");
+    }
 }

@@ -4,9 +4,10 @@ use crate::draw_list::{Batch, Work};
 use crate::options::View;
 use crate::pipelines::MeshTarget;
 use crate::readback;
-use crate::renderer::{Renderer, Shadows};
+use crate::renderer::{Renderer, Shadows, Translucent};
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
+use glam::Vec3;
 use std::time::Instant;
 use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
@@ -48,10 +49,16 @@ impl Renderer<'_> {
         let mut work = Vec::with_capacity(names.len());
         // 1. Each light's map.
         if let Some(shadows) = &self.shadows {
-            for (layer, casters) in shadows.casters.iter().enumerate() {
+            for layer in 0..shadows.casters.len() {
                 self.record_map(&mut encoder, shadows, layer, &queries, pass);
-                work.push(self.work_of(casters));
+                work.push(self.work_of(&shadows.blocking(layer)));
                 pass += 1;
+                if let Some(translucent) = &shadows.translucent {
+                    self.record_translucent(&mut encoder, (shadows, translucent), layer, &queries, pass);
+                    let drawn = self.work_of(&shadows.tinting(layer));
+                    work.extend([drawn; 2]);
+                    pass += 2;
+                }
             }
         }
         // 2. Surfaces, into the G-buffer or lit at once.
@@ -83,7 +90,7 @@ impl Renderer<'_> {
         Ok(FrameReport { frame_ms, passes })
     }
 
-    /// The picture: RGBA, 8 bits each, rows from the top. V is grey.
+    /// The picture: RGBA, 8 bits each, rows from the top. V is grey, or in the colours of the light that arrives.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] when the device is lost.
@@ -91,23 +98,39 @@ impl Renderer<'_> {
         if self.options.view != View::Visibility {
             return readback::texture(self.gpu, &self.targets.output);
         }
-        let grey = |v: &f32| {
-            let level = (v.clamp(0.0, 1.0) * 255.0).round() as u8;
-            [level, level, level, 255]
-        };
-        Ok(self.visibility()?.iter().flat_map(grey).collect())
+        let level = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let pixel = |v: &Vec3| [level(v.x), level(v.y), level(v.z), 255];
+        Ok(self.visibility_rgb()?.iter().flat_map(pixel).collect())
     }
 
-    /// V of the shown light, unrounded, rows from the top. Only after a frame of [`View::Visibility`].
+    /// V of the shown light, unrounded, rows from the top: of coloured light the mean of red, green and blue. Only after a
+    /// frame of [`View::Visibility`].
     ///
     /// # Errors
     /// [`RenderError::View`] for another view; [`RenderError::Gpu`] when the device is lost.
     pub fn visibility(&self) -> Result<Vec<f32>, RenderError> {
+        // Exact for equal numbers, which a sum of three is not.
+        let mean = |v: Vec3| if v.x == v.y && v.y == v.z { v.x } else { v.element_sum() / 3.0 };
+        Ok(self.visibility_rgb()?.into_iter().map(mean).collect())
+    }
+
+    /// V of the shown light in red, green and blue, unrounded, rows from the top; three equal numbers where the technique does
+    /// not colour light. Only after a frame of [`View::Visibility`].
+    ///
+    /// # Errors
+    /// [`RenderError::View`] for another view; [`RenderError::Gpu`] when the device is lost.
+    pub fn visibility_rgb(&self) -> Result<Vec<Vec3>, RenderError> {
         if self.options.view != View::Visibility {
             return Err(RenderError::View("only the view `visibility` holds V".into()));
         }
         let bytes = readback::texture(self.gpu, &self.targets.output)?;
-        Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+        let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(if self.options.colors_light() {
+            let color = |b: &[u8]| Vec3::new(number(b), number(&b[4..]), number(&b[8..]));
+            bytes.chunks_exact(16).map(color).collect()
+        } else {
+            bytes.chunks_exact(4).map(|b| Vec3::splat(number(b))).collect()
+        })
     }
 
     /// What the picture was asked to be.
@@ -133,7 +156,11 @@ impl Renderer<'_> {
     fn pass_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         if let Some(shadows) = &self.shadows {
-            names.extend((0..shadows.casters.len()).map(|view| format!("{} {view}", shadows.pass.name)));
+            let translucent = shadows.translucent.iter().flat_map(|t| &t.passes);
+            let of_a_view: Vec<_> =
+                std::iter::once(&shadows.pass).chain(translucent).map(|p| p.name).collect();
+            let views = 0..shadows.casters.len();
+            names.extend(views.flat_map(|view| of_a_view.iter().map(move |name| format!("{name} {view}"))));
         }
         names.push(if self.screen.is_some() { "surfaces" } else { "lit surfaces" }.to_owned());
         if self.screen.is_some() {
@@ -168,12 +195,50 @@ impl Renderer<'_> {
                     recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
                     recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
                     recorded.set_vertex_buffer(1, self.instances.slice(..));
-                    for batch in &shadows.casters[layer] {
+                    for batch in &shadows.blocking(layer) {
                         self.draw_caster(recorded, shadows, batch);
                     }
                 });
             },
         );
+    }
+
+    /// The colours of a layer, and the nearest translucent casters: passes `pass` and the next.
+    fn record_translucent(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        (shadows, translucent): (&Shadows, &Translucent),
+        layer: usize,
+        queries: &Queries,
+        pass: u32,
+    ) {
+        let [colors, nearest] = &translucent.passes;
+        let draw = |recorded: &mut wgpu::RenderPass<'_>, pass, pipeline: &wgpu::RenderPipeline| {
+            queries.count(recorded, pass, |recorded| {
+                recorded.set_pipeline(pipeline);
+                recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
+                recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+                recorded.set_vertex_buffer(1, self.instances.slice(..));
+                for batch in &shadows.tinting(layer) {
+                    let mesh = &self.geometry.meshes[batch.mesh];
+                    let group = &self.materials[self.material_of_mesh[batch.mesh]].caster;
+                    let (Some(group), Some(offset)) = (group, mesh.uv_color_offset) else { continue };
+                    recorded.set_bind_group(1, group, &[]);
+                    recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));
+                    recorded.set_vertex_buffer(2, self.geometry.uv_color.slice(offset..));
+                    recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
+                }
+            });
+        };
+        let (maps, pipelines, at) = (&translucent.maps, &translucent.pipelines, layer as u32);
+        let stamps = queries.stamps(pass);
+        umbrage::record_color_pass(encoder, &shadows.maps, maps, at, colors, stamps, |recorded| {
+            draw(recorded, pass, &pipelines.color);
+        });
+        let stamps = queries.stamps(pass + 1);
+        umbrage::record_nearest_pass(encoder, maps, at, nearest, stamps, |recorded| {
+            draw(recorded, pass + 1, &pipelines.nearest);
+        });
     }
 
     fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, shadows: &Shadows, batch: &Batch) {
@@ -293,6 +358,19 @@ impl Renderer<'_> {
             recorded.set_vertex_buffer(2, attributes.slice(mesh.attribute_offset..));
             recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
         }
+    }
+}
+
+impl Shadows {
+    /// The draws of a view's map: without translucent casters where those colour the light.
+    fn blocking(&self, layer: usize) -> Vec<Batch> {
+        let colors = self.translucent.is_some();
+        self.casters[layer].iter().filter(|batch| !(colors && batch.variant.blend)).cloned().collect()
+    }
+
+    /// The draws of translucent casters.
+    fn tinting(&self, layer: usize) -> Vec<Batch> {
+        self.casters[layer].iter().filter(|batch| batch.variant.blend).cloned().collect()
     }
 }
 

@@ -19,11 +19,14 @@ pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const GREY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// V, unrounded.
 pub const VISIBILITY: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// V where it is a colour, unrounded.
+pub const VISIBILITY_RGB: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The format that a view is drawn in.
-pub fn format_of(view: View) -> wgpu::TextureFormat {
+/// The format that a view is drawn in; `colors_light`: V is a colour.
+pub fn format_of(view: View, colors_light: bool) -> wgpu::TextureFormat {
     match view {
         View::Final | View::Light => COLOR,
+        View::Visibility if colors_light => VISIBILITY_RGB,
         View::Visibility => VISIBILITY,
         View::Depth | View::Distance | View::Projected | View::Channels => GREY,
     }
@@ -32,7 +35,7 @@ pub fn format_of(view: View) -> wgpu::TextureFormat {
 /// Layouts of the bind groups.
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0: frame, lights, views, maps, slides.
+    /// Group 0: frame, lights, views, maps, slides, maps of translucent casters and of colours.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1 of mesh pipelines.
     pub material: wgpu::BindGroupLayout,
@@ -71,6 +74,12 @@ impl Layouts {
             })
         };
         use wgpu::{SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension};
+        let kept = if color_maps {
+            TextureSampleType::Float { filterable: false }
+        } else {
+            TextureSampleType::Depth
+        };
+        let maps = texture(kept, TextureViewDimension::D2Array);
         Self {
             color_maps,
             frame: group(
@@ -84,19 +93,14 @@ impl Layouts {
                         has_dynamic_offset: false,
                         min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
                     },
-                    texture(
-                        if color_maps {
-                            TextureSampleType::Float { filterable: false }
-                        } else {
-                            TextureSampleType::Depth
-                        },
-                        TextureViewDimension::D2Array,
-                    ),
+                    maps,
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),
                     texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
                     texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::NonFiltering),
+                    maps,
+                    texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
                 ],
             ),
             material: crate::materials::layout(device),
@@ -291,7 +295,7 @@ pub fn screen_pipeline(
             module: &shader,
             entry_point: Some(entry_point),
             compilation_options: Default::default(),
-            targets: &[Some(format_of(view).into())],
+            targets: &[Some(format_of(view, needs.colors_light()).into())],
         }),
         multiview_mask: None,
         cache: None,

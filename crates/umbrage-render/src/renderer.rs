@@ -20,7 +20,9 @@ use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Draws, Pass, plan};
 use umbrage::core::technique::Storage;
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
-use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
+use umbrage::{
+    CasterPipelines, ChosenFormat, ShadowMaps, TranslucentMaps, TranslucentPipelines, choose_format,
+};
 use umbrage_scene::{Image, Instance, Reflectance, Scene};
 use wgpu::util::DeviceExt;
 
@@ -34,6 +36,34 @@ pub(crate) struct Shadows {
     pub view_group: wgpu::BindGroup,
     /// Draws of each view.
     pub casters: Vec<Vec<Batch>>,
+    /// Where translucent casters colour the light.
+    pub translucent: Option<Translucent>,
+}
+
+/// The maps of translucent casters and what draws them; their draws are those of the casters that are mixed by alpha.
+#[derive(Debug)]
+pub(crate) struct Translucent {
+    /// The colours, then the nearest.
+    pub passes: [Pass; 2],
+    pub maps: TranslucentMaps,
+    pub pipelines: TranslucentPipelines,
+}
+
+impl Translucent {
+    fn new(
+        gpu: &Gpu,
+        options: &RenderOptions,
+        format: &ChosenFormat,
+        layers: u32,
+        groups: [&wgpu::BindGroupLayout; 2],
+    ) -> Result<Option<Self>, RenderError> {
+        let mut passes = plan(&options.settings).into_iter().filter(|pass| pass.draws == Draws::Translucent);
+        let (Some(colors), Some(nearest)) = (passes.next(), passes.next()) else { return Ok(None) };
+        let maps = TranslucentMaps::new(&gpu.device, format, options.settings.map_size_texel(), layers)?;
+        let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
+        let pipelines = TranslucentPipelines::new(&gpu.device, format, &colors, groups, deform);
+        Ok(Some(Self { passes: [colors, nearest], maps, pipelines }))
+    }
 }
 
 /// A scene made ready for one GPU.
@@ -167,7 +197,8 @@ impl<'a> Renderer<'a> {
 
     /// Memory of all shadow maps, bytes.
     pub fn shadow_memory_bytes(&self) -> u64 {
-        self.shadows.as_ref().map_or(0, |s| s.maps.memory_bytes())
+        let translucent = |s: &Shadows| s.translucent.as_ref().map_or(0, |t| t.maps.memory_bytes());
+        self.shadows.as_ref().map_or(0, |s| s.maps.memory_bytes() + translucent(s))
     }
 
     /// The depth format that the maps got, and why. `None` without maps.
@@ -342,10 +373,13 @@ fn make_shadows(
     if lights.views.is_empty() {
         return Ok(None);
     }
-    let maps =
-        ShadowMaps::new(&gpu.device, &format, options.settings.map_size_texel(), lights.views.len() as u32)?;
+    let layers = lights.views.len() as u32;
+    let maps = ShadowMaps::new(&gpu.device, &format, options.settings.map_size_texel(), layers)?;
     let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
     let pipelines = CasterPipelines::new(&gpu.device, &format, &pass, caster_layout, deform);
+    let groups = [&pipelines.view_layout, caster_layout];
+    let translucent = Translucent::new(gpu, options, &format, layers, groups)?;
+    let maps = if translucent.is_some() { maps.keeping_scratch() } else { maps };
     let stride = GpuCasterView::STRIDE as usize;
     let mut matrices = vec![0u8; lights.views.len() * stride];
     for (view, slot) in lights.views.iter().zip(matrices.chunks_mut(stride)) {
@@ -369,7 +403,7 @@ fn make_shadows(
             }),
         }],
     });
-    Ok(Some(Shadows { pass, format, maps, pipelines, view_group, casters }))
+    Ok(Some(Shadows { pass, format, maps, pipelines, view_group, casters, translucent }))
 }
 
 fn frame_group(
@@ -426,7 +460,11 @@ fn frame_group(
         ..Default::default()
     });
     let maps = shadows.map_or(&stand_in, |s| s.maps.array());
+    let translucent = shadows.and_then(|s| s.translucent.as_ref());
+    let nearest = translucent.map_or(&stand_in, |t| t.maps.nearest().array());
     let given = crate::textures::given(&gpu.device, &gpu.queue, options);
+    // Any texture of colours stands in where light has none.
+    let colors = translucent.map_or(&slides, |t| t.maps.colors());
     let entries = [
         frame.as_entire_binding(),
         gpu_lights.as_entire_binding(),
@@ -437,6 +475,8 @@ fn frame_group(
         wgpu::BindingResource::Sampler(&slide_sampler),
         wgpu::BindingResource::TextureView(&given),
         wgpu::BindingResource::Sampler(&point),
+        wgpu::BindingResource::TextureView(nearest),
+        wgpu::BindingResource::TextureView(colors),
     ];
     let entries: Vec<_> =
         (0u32..).zip(entries).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();

@@ -42,6 +42,13 @@ pub struct ShaderNeeds {
     pub kernel: Option<Arc<str>>,
 }
 
+impl ShaderNeeds {
+    /// Is V a colour?
+    pub fn colors_light(&self) -> bool {
+        self.given || self.combination.is_some_and(|c| c.colors_light())
+    }
+}
+
 /// Up to how many lights are written out one by one: an index that is a constant is far cheaper than one that is not.
 const WRITTEN_OUT: usize = 4;
 
@@ -87,15 +94,20 @@ fn mapped(needs: &ShaderNeeds, combination: &Combination) -> String {
     } else {
         "p_world"
     };
+    let (seen, maps) = if combination.colors_light() {
+        ("vec3f", "maps, translucent_maps, light_colors")
+    } else {
+        ("f32", "maps")
+    };
     // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
     let seen_in = format!(
-        "alias Seen = f32;
-fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> f32 {{
+        "alias Seen = {seen};
+fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
     let at = umbrage_locate(view, {moved}, normal);
-    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL || light.places > 1u);
-    let seen = select(outside, {filter}(maps, {sampler}, view, at), at.inside);
+    let outside = Seen(select(0.0, 1.0, light.kind == DIRECTIONAL || light.places > 1u));
+    let seen = select(outside, {filter}({maps}, {sampler}, view, at), at.inside);
     // Of an area light, a part may be below the surface's horizon though its middle is not.
-    return select(seen, 0.0, light.places > 1u && !at.faces);
+    return select(seen, Seen(0.0), light.places > 1u && !at.faces);
 }}
 "
     );
@@ -108,7 +120,7 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
     let body = if needs.places {
         format!(
             "    let tiles = select(1u, 6u, light.kind == POINT);
-    var sum = 0.0;
+    var sum = Seen(0.0);
     for (var place = 0u; place < light.places; place++) {{
         let first = u32(light.view) + place * tiles;
         sum += {one};
@@ -121,7 +133,7 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
     };
     format!(
         "{seen_in}fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
-{body}    return select(seen, 1.0, light.view < 0);
+{body}    return select(seen, Seen(1.0), light.view < 0);
 }}
 "
     )

@@ -98,6 +98,24 @@ pub fn caster_shader(deform: &str) -> String {
     [deform, &away, include_str!("../wgsl/caster.wgsl")].join("\n")
 }
 
+/// Channels of 8 bits that a colour target keeps distance in; 0: one float keeps it.
+pub(crate) fn channels(storage: Storage) -> f64 {
+    match storage {
+        Storage::Packed1 => 1.0,
+        Storage::Packed2 => 2.0,
+        Storage::Packed3 => 3.0,
+        _ => 0.0,
+    }
+}
+
+/// The polygon offset of a planned pass; colour targets take theirs in the shader.
+pub(crate) fn depth_bias(storage: Storage, pass: &Pass) -> wgpu::DepthBiasState {
+    if storage.is_color() {
+        return wgpu::DepthBiasState::default();
+    }
+    wgpu::DepthBiasState { constant: pass.offset.constant, slope_scale: pass.offset.slope, clamp: 0.0 }
+}
+
 /// Pipelines that draw casters, and the layouts that they take.
 #[derive(Debug)]
 pub struct CasterPipelines {
@@ -166,24 +184,9 @@ impl CasterPipelines {
             }],
         });
         let is_color = format.storage.is_color();
-        let channels = match format.storage {
-            Storage::Packed1 => 1.0,
-            Storage::Packed2 => 2.0,
-            Storage::Packed3 => 3.0,
-            _ => 0.0,
-        };
-        let constants = [("CHANNELS", channels)];
+        let constants = [("CHANNELS", channels(format.storage))];
         let color_target = [Some(wgpu::ColorTargetState::from(format.format))];
-        // Colour targets take the bias in their shader.
-        let bias = if is_color {
-            wgpu::DepthBiasState::default()
-        } else {
-            wgpu::DepthBiasState {
-                constant: pass.offset.constant,
-                slope_scale: pass.offset.slope,
-                clamp: 0.0,
-            }
-        };
+        let bias = depth_bias(format.storage, pass);
         let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
@@ -260,7 +263,7 @@ pub fn record_caster_pass<'a>(
         ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
     })];
     let (depth, store) = match maps.scratch() {
-        Some(scratch) => (scratch, wgpu::StoreOp::Discard),
+        Some(scratch) => (scratch, maps.scratch_store()),
         None => (view, wgpu::StoreOp::Store),
     };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

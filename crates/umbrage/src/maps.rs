@@ -11,6 +11,7 @@ pub struct ShadowMaps {
     array: wgpu::TextureView,
     /// Depth while a map of colour is drawn; one for all layers.
     scratch: Option<wgpu::TextureView>,
+    keeps_scratch: bool,
     bytes_per_texel: u32,
 }
 
@@ -62,9 +63,21 @@ impl ShadowMaps {
             layers: (0..layers).map(|layer| view(layer, 1, wgpu::TextureViewDimension::D2)).collect(),
             array: view(0, layers, wgpu::TextureViewDimension::D2Array),
             scratch,
+            keeps_scratch: false,
             bytes_per_texel: format.storage.bytes_per_texel(),
             texture,
         })
+    }
+
+    /// The same maps, whose scratch depth outlives the pass that draws a layer, because a later pass tests it.
+    #[must_use]
+    pub fn keeping_scratch(self) -> Self {
+        Self { keeps_scratch: true, ..self }
+    }
+
+    /// What becomes of the scratch depth after a pass.
+    pub(crate) fn scratch_store(&self) -> wgpu::StoreOp {
+        if self.keeps_scratch { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard }
     }
 
     /// All layers, to sample.

@@ -1,4 +1,5 @@
-//! The four choices of a depth map, each a table: how it is stored, projected, biased and filtered.
+//! The five choices of a depth map, each a table: how it is stored, projected, biased and filtered, and what translucent
+//! casters do to light.
 
 use super::{Param, ParamDefault, Source};
 
@@ -288,6 +289,28 @@ choices! {
     }
 }
 
+choices! {
+    /// What translucent casters do to light: those whose material is mixed by alpha.
+    Translucent {
+        /// All or nothing, by the texel.
+        Cut = Choice {
+            id: "cut",
+            label: "Cut",
+            summary: "a translucent caster blocks all light where its alpha is a half or more, and none elsewhere",
+            ..EMPTY
+        };
+        /// They colour it.
+        Colored = Choice {
+            id: "colored",
+            label: "Coloured",
+            summary: "translucent casters dim and tint the light: a map of colours beside that of depths, multiplied up",
+            source: Some(BJORKE),
+            modules: &["through", "colored"],
+            ..EMPTY
+        };
+    }
+}
+
 impl Filter {
     /// Is its width a parameter?
     pub fn has_width(self) -> bool {
@@ -446,7 +469,7 @@ const MATRIX_BIAS: Param = Param {
     cost: "none; light leaks wherever it is more than a caster's distance from its receiver",
 };
 
-/// The four choices of a map.
+/// The five choices of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Combination {
     /// How depth is kept.
@@ -457,6 +480,8 @@ pub struct Combination {
     pub bias: Bias,
     /// How texels become visibility.
     pub filter: Filter,
+    /// What translucent casters do to light.
+    pub translucent: Translucent,
 }
 
 impl Combination {
@@ -465,13 +490,21 @@ impl Combination {
         Storage::ALL.iter().flat_map(|&storage| {
             Projection::ALL.iter().flat_map(move |&projection| {
                 Bias::ALL.iter().flat_map(move |&bias| {
-                    Filter::ALL.iter().map(move |&filter| Self { storage, projection, bias, filter })
+                    Filter::ALL.iter().flat_map(move |&filter| {
+                        Translucent::ALL.iter().map(move |&translucent| Self {
+                            storage,
+                            projection,
+                            bias,
+                            filter,
+                            translucent,
+                        })
+                    })
                 })
             })
         })
     }
 
-    /// Why the four do not go together; `None` when they do.
+    /// Why the five do not go together; `None` when they do.
     pub fn objection(&self) -> Option<&'static str> {
         let warped = matches!(self.projection, Projection::Perspective | Projection::LightSpacePerspective);
         if warped && self.storage.is_color() {
@@ -487,19 +520,33 @@ impl Combination {
         None
     }
 
-    /// The rows of the four choices.
-    pub fn rows(&self) -> [&'static Choice; 4] {
-        [self.storage.row(), self.projection.row(), self.bias.row(), self.filter.row()]
+    /// The rows of the five choices.
+    pub fn rows(&self) -> [&'static Choice; 5] {
+        [
+            self.storage.row(),
+            self.projection.row(),
+            self.bias.row(),
+            self.filter.row(),
+            self.translucent.row(),
+        ]
     }
 
-    /// The parameters of the four choices.
+    /// Is V a colour: three numbers, not one?
+    pub fn colors_light(&self) -> bool {
+        self.translucent == Translucent::Colored
+    }
+
+    /// The parameters of the five choices.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> {
         self.rows().into_iter().flat_map(|row| row.params)
     }
 
     /// Is the comparison left to the hardware's comparison sampler? It has one depth for all texels, and depth textures only.
     pub fn compares_in_hardware(&self) -> bool {
-        self.filter == Filter::Linear && !self.storage.is_color() && self.compare_module() == "compare/plain"
+        self.filter == Filter::Linear
+            && !self.storage.is_color()
+            && !self.colors_light()
+            && self.compare_module() == "compare/plain"
     }
 
     fn compare_module(&self) -> &'static str {
@@ -512,6 +559,9 @@ impl Combination {
 
     fn filter_module(&self) -> &'static str {
         match self.filter {
+            Filter::Nearest | Filter::MultiView if self.colors_light() => "filter/colored_nearest",
+            Filter::Linear if self.colors_light() => "filter/colored_linear",
+            Filter::Pcf | Filter::Kernel if self.colors_light() => "filter/colored_kernel",
             Filter::Nearest | Filter::MultiView => "filter/nearest",
             Filter::Linear if self.compares_in_hardware() => "filter/linear_hardware",
             Filter::Linear => "filter/linear",
@@ -519,7 +569,8 @@ impl Combination {
         }
     }
 
-    /// The WGSL function that filters: `umbrage_filter_...`, with the map, a sampler, the view and the texel as arguments.
+    /// The WGSL function that filters: `umbrage_filter_...`, with the map, a sampler, the view and the texel as arguments; where
+    /// light is coloured, the map of translucent casters and that of colours come after the map.
     pub fn filter_function(&self) -> String {
         self.filter_module().replacen("filter/", "umbrage_filter_", 1)
     }
@@ -546,10 +597,11 @@ impl Combination {
             Storage::Packed3 => 3,
             _ => 1,
         };
-        lookups * channels
+        // Coloured: a second map, and red, green and blue.
+        lookups * if self.colors_light() { 2 * channels + 3 } else { channels }
     }
 
-    /// The WGSL modules of the four choices.
+    /// The WGSL modules of the five choices.
     pub fn modules(&self) -> Vec<&'static str> {
         let map = match self.storage {
             Storage::Auto | Storage::Depth16 | Storage::Depth24 | Storage::Depth32Float => "map/depth",
