@@ -287,14 +287,14 @@ mod tests {
     #[test]
     fn what_is_set_goes_where_it_fits() {
         let ids = ["unshadowed", "linear", "matrix-bias"];
-        let set = [pair("map_size", "64"), pair("slope_factor", "3")];
+        let set = [pair("map_size", "64"), pair("matrix_bias", "0.01")];
         let settings = all_settings(&ids, &set, None).expect("valid");
         let value = |i: usize, name: &str| settings[i].value(name);
         assert_eq!(
             [value(0, "map_size"), value(1, "map_size"), value(2, "map_size")],
             [None, Some(64.0), Some(64.0)]
         );
-        assert_eq!([value(1, "slope_factor"), value(2, "slope_factor")], [Some(3.0), None]);
+        assert_eq!([value(1, "matrix_bias"), value(2, "matrix_bias")], [None, Some(0.01)]);
         assert!(all_settings(&ids, &[pair("mapsize", "64")], None).is_err());
         assert!(all_settings(&ids, &[pair("map_size", "0")], None).is_err());
     }

@@ -163,8 +163,8 @@ fn wrong_use_names_what_was_meant_before_anything_is_loaded() {
         (&["render", "--sise", "3x3"], &["--sise", "--size"]),
         (&["bench", "--techniques", "unshadowed,hrad"], &["hrad", "`hard`"]),
         (
-            &["bench", "--techniques", "linear,matrix-bias", "--set", "slope_factor=1"],
-            &["`matrix-bias` has no setting"],
+            &["bench", "--techniques", "linear,matrix-bias", "--set", "matrix_bias=0.1"],
+            &["`linear` has no setting"],
         ),
         (&["passes"], &["<ID>"]),
         (&["passes", "liner"], &["`linear`"]),
