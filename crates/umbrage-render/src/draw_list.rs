@@ -136,7 +136,7 @@ impl Items {
         all: bool,
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<Batch> {
-        let frustum = view.frustum();
+        let frustum = view.caster_frustum(light);
         let in_front = |bounds: &Aabb| {
             bounds.corners().iter().all(|p| -view.light_from_world.transform_point3(*p).z > view.near_m)
         };

@@ -46,6 +46,12 @@ pub fn depth_compare() -> wgpu::CompareFunction {
     if DEPTH.is_reversed() { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
 }
 
+/// Can maps be drawn without a near plane that cuts? What lies before it is then flattened onto it, and its shadow is whole. Needs
+/// the optional feature `DEPTH_CLIP_CONTROL`; without it, casters nearer to the light than the near plane are cut off.
+pub fn unclipped(device: &wgpu::Device) -> bool {
+    device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
+}
+
 /// Mirrors `CasterView` of `wgsl/caster.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
 /// view, [`GpuCasterView::STRIDE`] bytes apart.
 #[repr(C)]
@@ -203,7 +209,11 @@ impl CasterPipelines {
                     compilation_options: Default::default(),
                     buffers: if cut_out { &buffers } else { &buffers[..2] },
                 },
-                primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode,
+                    unclipped_depth: unclipped(device),
+                    ..Default::default()
+                },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: if is_color { SCRATCH_DEPTH } else { format.format },
                     depth_write_enabled: Some(true),

@@ -32,7 +32,7 @@ pub enum ShadowError {
     },
     /// A map larger than the device's textures may be.
     #[error(
-        "a {size_texel}x{size_texel} shadow map with {layers} layers is more than this device's textures may have ({limit}x{limit}, {layer_limit} layers); set a smaller map_size"
+        "a {size_texel}x{size_texel} shadow map with {layers} layers is more than this device's textures may have ({limit}x{limit}, {layer_limit} layers); set a smaller map_size, fewer views, or fewer lights"
     )]
     TooLarge {
         /// Asked for, texels.
