@@ -16,8 +16,26 @@ pub enum Target {
         /// Width and height, texels.
         size_texel: u32,
     },
+    /// A 32-bit float depth texture that the next pass reads; one for all lights, who take turns.
+    Layer {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
     /// The caller's picture and its depth.
     Picture,
+}
+
+/// What is kept of all surfaces that lie behind each other in a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// The nearest.
+    Nearest,
+    /// The nearest of those strictly behind the layer drawn before: depth peeling (Everitt 2001, "Interactive
+    /// Order-Independent Transparency").
+    Behind,
+    /// The place halfway between the layer drawn before and the nearest surface strictly behind it (Woo 1992). Nothing where
+    /// nothing lies behind.
+    Midpoint,
 }
 
 /// What is drawn.
@@ -35,6 +53,10 @@ pub enum Cull {
     /// Back faces of casters that are closed and wholly in front of the light: what they block, their front faces
     /// block too. All faces of all others, because a surface blocks light whichever way it faces.
     BackOfClosed,
+    /// Front faces of casters that are closed: who enters a solid must leave it. All faces of all others.
+    FrontOfClosed,
+    /// None. Casters that shadow nothing are drawn too: they are what lies behind others.
+    Nothing,
     /// As each material says.
     ByMaterial,
 }
@@ -64,6 +86,8 @@ pub struct Pass {
     pub color: bool,
     /// Which faces are left out.
     pub cull: Cull,
+    /// What is kept where surfaces lie behind each other.
+    pub keeps: Keeps,
     /// Polygon offset.
     pub offset: PolygonOffset,
     /// What is drawn.
@@ -79,6 +103,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
         clear_depth: DEPTH.clear(),
         color: true,
         cull: Cull::ByMaterial,
+        keeps: Keeps::Nearest,
         offset: PolygonOffset::default(),
         draws: Draws::Surfaces,
     };
@@ -90,13 +115,36 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                 target: Target::Map { storage: combination.storage, size_texel: settings.map_size_texel() },
                 clear_depth: DEPTH.clear(),
                 color: false,
-                cull: Cull::BackOfClosed,
+                cull: match combination.bias {
+                    Bias::Midpoint => Cull::Nothing,
+                    Bias::SecondDepth => Cull::FrontOfClosed,
+                    _ => Cull::BackOfClosed,
+                },
+                keeps: if combination.bias == Bias::Midpoint { Keeps::Midpoint } else { Keeps::Nearest },
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
-            vec![map, lighting]
+            match combination.bias {
+                Bias::Midpoint => vec![peel_pass(settings.map_size_texel(), 0), map, lighting],
+                _ => vec![map, lighting],
+            }
         }
         _ => vec![lighting],
+    }
+}
+
+/// The pass that draws one layer of a depth peel, 0 being the nearest.
+pub fn peel_pass(size_texel: u32, layer: u32) -> Pass {
+    Pass {
+        name: "peel",
+        per_light: true,
+        target: Target::Layer { size_texel },
+        clear_depth: DEPTH.clear(),
+        color: false,
+        cull: Cull::Nothing,
+        keeps: if layer == 0 { Keeps::Nearest } else { Keeps::Behind },
+        offset: PolygonOffset::default(),
+        draws: Draws::Casters,
     }
 }
 
@@ -107,7 +155,9 @@ pub fn lookup_bias_depth(settings: &Settings) -> f32 {
 
 fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
     match bias {
-        Bias::None | Bias::Matrix | Bias::ReceiverPlane => PolygonOffset::default(),
+        Bias::None | Bias::Matrix | Bias::ReceiverPlane | Bias::Midpoint | Bias::SecondDepth => {
+            PolygonOffset::default()
+        }
         // Every caster is carried on by 3/4 of a texel along both axes (`UMBRAGE_NEAR`), and the rasteriser's slope is the larger
         // of the two.
         Bias::Auto => PolygonOffset { constant: 0, slope: DEPTH.away() * 1.5 },
@@ -129,11 +179,16 @@ impl std::fmt::Display for Pass {
                 };
                 format!("{size_texel}x{size_texel} {format}, the light's layer")
             }
+            Target::Layer { size_texel } => {
+                format!("{size_texel}x{size_texel} {}, read by the next pass", Storage::Depth32Float.row().id)
+            }
             Target::Picture => "the picture and its depth".to_owned(),
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
             Cull::BackOfClosed => "back faces of closed casters culled",
+            Cull::FrontOfClosed => "front faces of closed casters culled",
+            Cull::Nothing => "no faces culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
         let draws = match self.draws {
@@ -149,6 +204,13 @@ impl std::fmt::Display for Pass {
         write!(f, "  state   {color}, depth {compare}, {cull}")?;
         if self.offset != PolygonOffset::default() {
             write!(f, ", polygon offset slope {} constant {}", self.offset.slope, self.offset.constant)?;
+        }
+        match self.keeps {
+            Keeps::Nearest => {}
+            Keeps::Behind => write!(f, "\n  keeps   the nearest surface behind the layer before")?,
+            Keeps::Midpoint => {
+                write!(f, "\n  keeps   the middle between the layer before and the nearest surface behind it")?;
+            }
         }
         write!(f, "\n  draws   {draws}")
     }
@@ -166,6 +228,22 @@ mod tests {
             let passes = plan(&settings);
             assert_eq!(passes.last().map(|p| p.draws), Some(Draws::Surfaces), "{}", technique.id);
             assert_eq!(passes.len() > 1, technique.family == Family::Map, "{}", technique.id);
+        }
+    }
+
+    #[test]
+    fn a_midpoint_map_is_peeled_first_and_a_second_depth_map_culls_fronts() {
+        let midpoint = plan(&Settings::new("midpoint", []).expect("valid"));
+        let kept: Vec<_> = midpoint.iter().map(|pass| (pass.keeps, pass.cull)).collect();
+        let none = Cull::Nothing;
+        assert_eq!(
+            kept,
+            [(Keeps::Nearest, none), (Keeps::Midpoint, none), (Keeps::Nearest, Cull::ByMaterial)]
+        );
+        let second = plan(&Settings::new("second-depth", []).expect("valid"));
+        assert_eq!((second.len(), second[0].cull), (2, Cull::FrontOfClosed));
+        for pass in [&midpoint[0], &midpoint[1], &second[0]] {
+            assert_eq!(pass.offset, PolygonOffset::default(), "no numbers at all");
         }
     }
 
