@@ -209,7 +209,10 @@ impl std::fmt::Display for Pass {
             Keeps::Nearest => {}
             Keeps::Behind => write!(f, "\n  keeps   the nearest surface behind the layer before")?,
             Keeps::Midpoint => {
-                write!(f, "\n  keeps   the middle between the layer before and the nearest surface behind it")?;
+                write!(
+                    f,
+                    "\n  keeps   the middle between the layer before and the nearest surface behind it"
+                )?;
             }
         }
         write!(f, "\n  draws   {draws}")

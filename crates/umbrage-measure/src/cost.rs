@@ -20,7 +20,7 @@ pub struct Cost {
     pub frame_ms: f64,
     /// Median of frames without.
     pub unshadowed_ms: f64,
-    /// Shadow maps.
+    /// Shadow maps, and what is drawn on the way to them.
     pub memory_bytes: u64,
     /// Passes that draw casters.
     pub passes: u64,
@@ -28,7 +28,7 @@ pub struct Cost {
     pub draws: u64,
     /// Their triangles.
     pub triangles: u64,
-    /// Texels of the maps that are drawn.
+    /// Texels that these passes draw to.
     pub texels: u64,
     /// Lookups of a map for each lit pixel.
     pub taps: u64,
@@ -74,7 +74,7 @@ impl Cost {
             passes: casters.len() as u64,
             draws: casters.iter().map(|pass| pass.work.draws).sum(),
             triangles: casters.iter().map(|pass| pass.work.triangles).sum(),
-            texels: with.views().len() as u64 * side * side,
+            texels: (with.views().len() * planned.len()) as u64 * side * side,
             taps: u64::from(settings.taps()),
             pass_names: report.passes.iter().map(|pass| pass.name.clone()).collect(),
         })

@@ -2,14 +2,17 @@
 
 use crate::draw_list::{Batch, Work};
 use crate::options::View;
+use crate::peeled::Peeled;
 use crate::pipelines::MeshTarget;
 use crate::readback;
 use crate::renderer::{Renderer, Shadows};
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
 use std::time::Instant;
+use umbrage::CasterPipelines;
 use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
+use umbrage::peel::record_peel_layer;
 
 /// What a pass did.
 #[derive(Clone, Debug)]
@@ -49,6 +52,11 @@ impl Renderer<'_> {
         // 1. Each light's map.
         if let Some(shadows) = &self.shadows {
             for (layer, casters) in shadows.casters.iter().enumerate() {
+                if let Some(peeled) = &shadows.peeled {
+                    self.record_peel(&mut encoder, shadows, peeled, layer, &queries, pass);
+                    work.push(self.work_of(casters));
+                    pass += 1;
+                }
                 self.record_map(&mut encoder, shadows, layer, &queries, pass);
                 work.push(self.work_of(casters));
                 pass += 1;
@@ -133,7 +141,11 @@ impl Renderer<'_> {
     fn pass_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         if let Some(shadows) = &self.shadows {
-            names.extend((0..shadows.casters.len()).map(|view| format!("{} {view}", shadows.pass.name)));
+            let peel = shadows.peeled.as_ref().map(|peeled| peeled.pass.name);
+            for view in 0..shadows.casters.len() {
+                let passes = peel.into_iter().chain([shadows.pass.name]);
+                names.extend(passes.map(|name| format!("{name} {view}")));
+            }
         }
         names.push(if self.screen.is_some() { "surfaces" } else { "lit surfaces" }.to_owned());
         if self.screen.is_some() {
@@ -164,30 +176,60 @@ impl Renderer<'_> {
             &shadows.pass,
             stamps,
             |recorded| {
+                if let Some(peeled) = &shadows.peeled {
+                    recorded.set_bind_group(2, peeled.peel.behind(0), &[]);
+                }
                 queries.count(recorded, pass, |recorded| {
-                    recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
-                    recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-                    recorded.set_vertex_buffer(1, self.instances.slice(..));
-                    for batch in &shadows.casters[layer] {
-                        self.draw_caster(recorded, shadows, batch);
-                    }
+                    self.draw_casters(recorded, shadows, &shadows.pipelines, layer);
                 });
             },
         );
     }
 
-    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, shadows: &Shadows, batch: &Batch) {
+    fn record_peel(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        shadows: &Shadows,
+        peeled: &Peeled,
+        layer: usize,
+        queries: &Queries,
+        pass: u32,
+    ) {
+        let stamps = queries.stamps(pass);
+        record_peel_layer(encoder, &peeled.peel, 0, &peeled.pass, stamps, |recorded| {
+            queries.count(recorded, pass, |recorded| {
+                self.draw_casters(recorded, shadows, &peeled.pipelines, layer);
+            });
+        });
+    }
+
+    fn draw_casters(
+        &self,
+        recorded: &mut wgpu::RenderPass<'_>,
+        shadows: &Shadows,
+        pipelines: &CasterPipelines,
+        layer: usize,
+    ) {
+        recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
+        recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+        recorded.set_vertex_buffer(1, self.instances.slice(..));
+        for batch in &shadows.casters[layer] {
+            self.draw_caster(recorded, pipelines, batch);
+        }
+    }
+
+    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, pipelines: &CasterPipelines, batch: &Batch) {
         let mesh = &self.geometry.meshes[batch.mesh];
         let cut_out = &self.materials[self.material_of_mesh[batch.mesh]].caster;
         if let (Some(group), Some(offset)) = (cut_out, mesh.uv_alpha_offset) {
-            recorded.set_pipeline(&shadows.pipelines.cut_out);
+            recorded.set_pipeline(&pipelines.cut_out);
             recorded.set_bind_group(1, group, &[]);
             recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
         } else {
-            recorded.set_pipeline(match (batch.back_hidden, batch.variant.mirrored) {
-                (true, false) => &shadows.pipelines.closed,
-                (true, true) => &shadows.pipelines.closed_mirrored,
-                (false, _) => &shadows.pipelines.open,
+            recorded.set_pipeline(match (batch.one_sided, batch.variant.mirrored) {
+                (true, false) => &pipelines.closed,
+                (true, true) => &pipelines.closed_mirrored,
+                (false, _) => &pipelines.open,
             });
         }
         recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));

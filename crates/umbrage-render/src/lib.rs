@@ -13,6 +13,7 @@ mod layout;
 mod lights;
 mod materials;
 mod options;
+mod peeled;
 pub mod picture;
 mod pipelines;
 mod readback;

@@ -6,10 +6,12 @@
 pub mod caster;
 pub mod format;
 pub mod maps;
+pub mod peel;
 
 pub use caster::{CasterPipelines, CasterStreams, record_caster_pass};
 pub use format::{ChosenFormat, choose_format};
 pub use maps::ShadowMaps;
+pub use peel::{Peel, PeelPipelines, record_peel};
 pub use umbrage_core as core;
 
 /// What can go wrong on the GPU's side. Each says what to do.

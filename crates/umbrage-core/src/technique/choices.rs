@@ -49,8 +49,10 @@ const INTEL: Source =
     Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
 const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
-pub(super) const WOO: Source = Source { paper: "Woo, The Shadow Depth Map Revisited, Graphics Gems III", year: 1992 };
-pub(super) const WANG_MOLNAR: Source = Source { paper: "Wang and Molnar, Second-Depth Shadow Mapping", year: 1994 };
+pub(super) const WOO: Source =
+    Source { paper: "Woo, The Shadow Depth Map Revisited, Graphics Gems III", year: 1992 };
+pub(super) const WANG_MOLNAR: Source =
+    Source { paper: "Wang and Molnar, Second-Depth Shadow Mapping", year: 1994 };
 
 choices! {
     /// How depth is kept.
