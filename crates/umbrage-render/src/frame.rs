@@ -177,7 +177,7 @@ impl Renderer<'_> {
             stamps,
             |recorded| {
                 if let Some(peeled) = &shadows.peeled {
-                    recorded.set_bind_group(2, peeled.peel.behind(0), &[]);
+                    recorded.set_bind_group(1, peeled.peel.behind(0), &[]);
                 }
                 queries.count(recorded, pass, |recorded| {
                     self.draw_casters(recorded, shadows, &shadows.pipelines, layer);
@@ -223,7 +223,7 @@ impl Renderer<'_> {
         let cut_out = &self.materials[self.material_of_mesh[batch.mesh]].caster;
         if let (Some(group), Some(offset)) = (cut_out, mesh.uv_alpha_offset) {
             recorded.set_pipeline(&pipelines.cut_out);
-            recorded.set_bind_group(1, group, &[]);
+            recorded.set_bind_group(pipelines.cut_out_group, group, &[]);
             recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
         } else {
             recorded.set_pipeline(match (batch.one_sided, batch.variant.mirrored) {

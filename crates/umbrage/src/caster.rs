@@ -100,7 +100,10 @@ pub fn caster_shader(deform: &str) -> String {
 
 /// The same, and what draws behind a layer that was drawn before: see [`crate::peel`].
 pub fn peel_shader(deform: &str) -> String {
-    [&caster_shader(deform), include_str!("../wgsl/peel.wgsl")].join("\n")
+    // All pipelines of the pass then begin with the same two groups: what is bound stays bound from one to the next.
+    let caster = include_str!("../wgsl/caster.wgsl").replace("@group(1)", "@group(2)");
+    let away = format!("const AWAY = {:?};\n", DEPTH.away());
+    [deform, &away, &caster, include_str!("../wgsl/peel.wgsl")].join("\n")
 }
 
 /// The fragment shader of a pass, for solid casters or cut-out ones, depth or colour. `None`: depth is all that is drawn.
@@ -130,12 +133,14 @@ pub struct CasterPipelines {
     pub closed_mirrored: wgpu::RenderPipeline,
     /// Casters whose texture cuts holes.
     pub cut_out: wgpu::RenderPipeline,
+    /// The group of [`Self::cut_out_layout`]: 1, or 2 where the pass keeps what lies behind a layer.
+    pub cut_out_group: u32,
     /// Group 0: a [`GpuCasterView`], a uniform buffer with a dynamic offset.
     pub view_layout: wgpu::BindGroupLayout,
 }
 
 impl CasterPipelines {
-    /// Group 1 of cut-out casters: base colour texture, its sampler.
+    /// Group [`Self::cut_out_group`] of cut-out casters: base colour texture, its sampler.
     pub fn cut_out_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage cut-out caster"),
@@ -161,7 +166,7 @@ impl CasterPipelines {
     }
 
     /// Makes the pipelines of a planned pass for maps of `format`. Those of passes that keep what lies behind a layer take it in
-    /// group 2: [`crate::Peel::behind`]. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
+    /// group 1: [`crate::Peel::behind`]. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
     /// [`NO_DEFORM`] or a user's own.
     pub fn new(
         device: &wgpu::Device,
@@ -236,10 +241,11 @@ impl CasterPipelines {
                 cache: None,
             })
         };
-        let solid = [Some(&view_layout), None, layer_layout.as_ref()];
-        let cut_out = [Some(&view_layout), Some(cut_out_layout), layer_layout.as_ref()];
-        let (solid, cut_out) =
-            if is_behind { (&solid[..], &cut_out[..]) } else { (&solid[..1], &cut_out[..2]) };
+        let mut groups = vec![Some(&view_layout)];
+        groups.extend(layer_layout.as_ref().map(Some));
+        let cut_out_group = groups.len() as u32;
+        groups.push(Some(cut_out_layout));
+        let (solid, cut_out) = (&groups[..groups.len() - 1], &groups[..]);
         let (closed, mirrored) = match pass.cull {
             Cull::BackOfClosed => (Some(wgpu::Face::Back), Some(wgpu::Face::Front)),
             Cull::FrontOfClosed => (Some(wgpu::Face::Front), Some(wgpu::Face::Back)),
@@ -250,6 +256,7 @@ impl CasterPipelines {
             closed: pipeline("umbrage closed caster", solid, false, closed),
             closed_mirrored: pipeline("umbrage mirrored caster", solid, false, mirrored),
             cut_out: pipeline("umbrage cut-out caster", cut_out, true, None),
+            cut_out_group,
             view_layout,
         }
     }

@@ -14,7 +14,7 @@ use umbrage_core::plan::{Pass, peel_pass};
 pub struct Peel {
     texture: wgpu::Texture,
     layers: Vec<wgpu::TextureView>,
-    /// Group 2 of the pass that draws what lies behind each layer.
+    /// Group 1 of the pass that draws what lies behind each layer.
     groups: Vec<wgpu::BindGroup>,
 }
 
@@ -83,7 +83,7 @@ impl Peel {
         self.texture.width()
     }
 
-    /// Group 2 of pipelines that draw what lies behind a layer. `None` past the last.
+    /// Group 1 of pipelines that draw what lies behind a layer. `None` past the last.
     pub fn behind(&self, layer: u32) -> Option<&wgpu::BindGroup> {
         self.groups.get(layer as usize)
     }
@@ -94,7 +94,7 @@ impl Peel {
     }
 }
 
-/// Group 2 of pipelines that draw what lies behind a layer: its depth.
+/// Group 1 of pipelines that draw what lies behind a layer: its depth.
 pub fn layer_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("umbrage peeled layer"),
@@ -137,7 +137,8 @@ impl PeelPipelines {
 }
 
 /// Records one pass for each layer of `peel`, nearest first. `draw` gets the pass and the pipelines of its layer, and draws all
-/// casters each time: it sets groups 0 and 1 and the vertex streams of [`crate::CasterStreams`], and leaves group 2 alone.
+/// casters each time: it sets group 0, group `cut_out_group` of cut-out casters and the
+/// vertex streams of [`crate::CasterStreams`], and leaves the layer's group 1 alone.
 pub fn record_peel(
     encoder: &mut wgpu::CommandEncoder,
     peel: &Peel,
@@ -178,7 +179,7 @@ pub fn record_peel_layer<'a>(
         multiview_mask: None,
     });
     if layer > 0 {
-        recorded.set_bind_group(2, peel.behind(layer - 1), &[]);
+        recorded.set_bind_group(1, peel.behind(layer - 1), &[]);
     }
     draw(&mut recorded);
 }

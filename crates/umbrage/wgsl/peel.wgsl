@@ -1,7 +1,7 @@
-// Follows `caster.wgsl`: casters behind a layer that was drawn before.
+// Follows `caster.wgsl`, whose group 1 becomes 2: casters behind a layer that was drawn before.
 
 // That layer, of the same view and size.
-@group(2) @binding(0) var nearer: texture_depth_2d;
+@group(1) @binding(0) var nearer: texture_depth_2d;
 
 // Keeps only what is strictly behind the layer. Both draws must come to the same bits for the same surface, so positions are
 // @invariant and the layer is a 32-bit float: equal then means the layer itself, and no margin is needed. Where the layer is empty
