@@ -222,8 +222,9 @@ pub fn open_casters(scene: &Scene, settings: &Settings, casters: &[Vec<Batch>]) 
         if meshes.len() > NAMED { format!(" and {} more", meshes.len() - NAMED) } else { String::new() };
     (!meshes.is_empty()).then(|| {
         format!(
-            "closed-mesh check: second-depth maps hold back faces, but {}{more} have holes, loose edges or deforming vertices, so \
-             both of their sides are drawn and they may shadow themselves; use bias=midpoint or bias=auto",
+            "closed-mesh check: second-depth maps hold back faces only, and these casters are not closed solids (open edges, \
+             faces turned against each other, cut out, or deformed): {}{more}; both of their sides are drawn, so they may \
+             shadow themselves; use bias=midpoint or bias=auto",
             named.join(", ")
         )
     })

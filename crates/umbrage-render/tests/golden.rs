@@ -69,7 +69,7 @@ fn bias_matrix() {
 
 /// The negative control: the same map without its way of doing without a bias.
 fn unbiased(name: &str, bias: &str) {
-    let pairs = |bias| [("bias", bias), ("map_size", "256")];
+    let pairs = |bias| [("bias", bias), ("map_size", "512")];
     visibility(name, &builtin("contact"), "linear", &pairs(bias));
     let Some(gpu) = gpu() else { return };
     let none = shoot(&gpu, &builtin("contact"), settings("linear", &pairs("none")), View::Visibility, SIDE);
