@@ -16,6 +16,11 @@ pub enum Target {
         /// Width and height, texels.
         size_texel: u32,
     },
+    /// A 32-bit float depth texture that the next pass reads; one for all lights, who take turns.
+    Layer {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
     /// The light's layer of a second map array of the same kind, which holds translucent casters only.
     TranslucentMap {
         /// How depth is kept.
@@ -31,6 +36,19 @@ pub enum Target {
     },
     /// The caller's picture and its depth.
     Picture,
+}
+
+/// What is kept of all surfaces that lie behind each other in a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// The nearest.
+    Nearest,
+    /// The nearest of those strictly behind the layer drawn before: depth peeling (Everitt 2001, "Interactive
+    /// Order-Independent Transparency").
+    Behind,
+    /// The place halfway between the layer drawn before and the nearest surface strictly behind it (Woo 1992). Nothing where
+    /// nothing lies behind.
+    Midpoint,
 }
 
 /// What is drawn.
@@ -51,7 +69,9 @@ pub enum Cull {
     /// Back faces of casters that are closed and wholly in front of the light: what they block, their front faces
     /// block too. All faces of all others, because a surface blocks light whichever way it faces.
     BackOfClosed,
-    /// None: light passes both sides of a bottle.
+    /// Front faces of casters that are closed: who enters a solid must leave it. All faces of all others.
+    FrontOfClosed,
+    /// None: light passes both sides of a bottle, and what lies behind others are also casters that shadow nothing.
     Nothing,
     /// As each material says.
     ByMaterial,
@@ -82,6 +102,8 @@ pub struct Pass {
     pub color: bool,
     /// Which faces are left out.
     pub cull: Cull,
+    /// What is kept where surfaces lie behind each other.
+    pub keeps: Keeps,
     /// Polygon offset.
     pub offset: PolygonOffset,
     /// What is drawn.
@@ -97,6 +119,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
         clear_depth: DEPTH.clear(),
         color: true,
         cull: Cull::ByMaterial,
+        keeps: Keeps::Nearest,
         offset: PolygonOffset::default(),
         draws: Draws::Surfaces,
     };
@@ -108,10 +131,18 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                 target: Target::Map { storage: combination.storage, size_texel: settings.map_size_texel() },
                 clear_depth: DEPTH.clear(),
                 color: false,
-                cull: Cull::BackOfClosed,
+                cull: match combination.bias {
+                    Bias::Midpoint => Cull::Nothing,
+                    Bias::SecondDepth => Cull::FrontOfClosed,
+                    _ => Cull::BackOfClosed,
+                },
+                keeps: if combination.bias == Bias::Midpoint { Keeps::Midpoint } else { Keeps::Nearest },
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
+            if combination.bias == Bias::Midpoint {
+                return vec![peel_pass(settings.map_size_texel(), 0), map, lighting];
+            }
             if !combination.colors_light() {
                 return vec![map, lighting];
             }
@@ -136,6 +167,21 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
     }
 }
 
+/// The pass that draws one layer of a depth peel, 0 being the nearest.
+pub fn peel_pass(size_texel: u32, layer: u32) -> Pass {
+    Pass {
+        name: "peel",
+        per_light: true,
+        target: Target::Layer { size_texel },
+        clear_depth: DEPTH.clear(),
+        color: false,
+        cull: Cull::Nothing,
+        keeps: if layer == 0 { Keeps::Nearest } else { Keeps::Behind },
+        offset: PolygonOffset::default(),
+        draws: Draws::Casters,
+    }
+}
+
 /// The uniform bias that goes into the lookup matrix, depth range; 0 when the bias is none of its kind.
 pub fn lookup_bias_depth(settings: &Settings) -> f32 {
     settings.value("matrix_bias").unwrap_or(0.0)
@@ -143,7 +189,9 @@ pub fn lookup_bias_depth(settings: &Settings) -> f32 {
 
 fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
     match bias {
-        Bias::None | Bias::Matrix | Bias::ReceiverPlane => PolygonOffset::default(),
+        Bias::None | Bias::Matrix | Bias::ReceiverPlane | Bias::Midpoint | Bias::SecondDepth => {
+            PolygonOffset::default()
+        }
         // Every caster is carried on by 3/4 of a texel along both axes (`UMBRAGE_NEAR`), and the rasteriser's slope is the larger
         // of the two.
         Bias::Auto => PolygonOffset { constant: 0, slope: DEPTH.away() * 1.5 },
@@ -170,11 +218,15 @@ impl std::fmt::Display for Pass {
             Target::Colors { size_texel } => {
                 format!("{size_texel}x{size_texel} rgba8unorm, the light's layer")
             }
+            Target::Layer { size_texel } => {
+                format!("{size_texel}x{size_texel} {}, read by the next pass", Storage::Depth32Float.row().id)
+            }
             Target::Picture => "the picture and its depth".to_owned(),
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
             Cull::BackOfClosed => "back faces of closed casters culled",
+            Cull::FrontOfClosed => "front faces of closed casters culled",
             Cull::Nothing => "no faces culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
@@ -200,6 +252,16 @@ impl std::fmt::Display for Pass {
         write!(f, "  state   {color}, depth {compare}, {cull}")?;
         if self.offset != PolygonOffset::default() {
             write!(f, ", polygon offset slope {} constant {}", self.offset.slope, self.offset.constant)?;
+        }
+        match self.keeps {
+            Keeps::Nearest => {}
+            Keeps::Behind => write!(f, "\n  keeps   the nearest surface behind the layer before")?,
+            Keeps::Midpoint => {
+                write!(
+                    f,
+                    "\n  keeps   the middle between the layer before and the nearest surface behind it"
+                )?;
+            }
         }
         write!(f, "\n  draws   {draws}")
     }
@@ -234,6 +296,22 @@ mod tests {
         );
         let cut = Settings::new("colored", [("translucent", "cut")]).expect("valid");
         assert_eq!(plan(&cut), plan(&Settings::new("linear", []).expect("valid")));
+    }
+
+    #[test]
+    fn a_midpoint_map_is_peeled_first_and_a_second_depth_map_culls_fronts() {
+        let midpoint = plan(&Settings::new("midpoint", []).expect("valid"));
+        let kept: Vec<_> = midpoint.iter().map(|pass| (pass.keeps, pass.cull)).collect();
+        let none = Cull::Nothing;
+        assert_eq!(
+            kept,
+            [(Keeps::Nearest, none), (Keeps::Midpoint, none), (Keeps::Nearest, Cull::ByMaterial)]
+        );
+        let second = plan(&Settings::new("second-depth", []).expect("valid"));
+        assert_eq!((second.len(), second[0].cull), (2, Cull::FrontOfClosed));
+        for pass in [&midpoint[0], &midpoint[1], &second[0]] {
+            assert_eq!(pass.offset, PolygonOffset::default(), "no numbers at all");
+        }
     }
 
     #[test]

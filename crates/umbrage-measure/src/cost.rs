@@ -20,7 +20,7 @@ pub struct Cost {
     pub frame_ms: f64,
     /// Median of frames without.
     pub unshadowed_ms: f64,
-    /// Shadow maps.
+    /// Shadow maps, and what is drawn on the way to them.
     pub memory_bytes: u64,
     /// Passes that draw casters.
     pub passes: u64,
@@ -28,7 +28,7 @@ pub struct Cost {
     pub draws: u64,
     /// Their triangles.
     pub triangles: u64,
-    /// Texels of the maps that are drawn.
+    /// Texels that these passes draw to.
     pub texels: u64,
     /// Lookups of a map for each lit pixel.
     pub taps: u64,

@@ -7,6 +7,8 @@ use glam::{Vec3, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use umbrage::core::fit::ShadowView;
 use umbrage::core::idle::flat_caster_is_idle;
+use umbrage::core::plan::Cull;
+use umbrage::core::technique::{Bias, Settings};
 use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
 use umbrage_scene::{Scene, is_closed, plane_of};
 
@@ -17,8 +19,8 @@ pub struct Batch {
     pub mesh: usize,
     /// Pipeline variant.
     pub variant: Variant,
-    /// A closed solid wholly in front of the view, so that its back faces need not be drawn. Only set for casters.
-    pub back_hidden: bool,
+    /// A closed solid of which the pass leaves out one side, as its `Cull` says. Only set for casters.
+    pub one_sided: bool,
     /// Instances: first and past the last, in the buffer of all views.
     pub instances: std::ops::Range<u32>,
 }
@@ -30,6 +32,8 @@ struct Item {
     variant: Variant,
     bounds_world: Aabb,
     closed: bool,
+    /// Has it holes that light passes?
+    cut_out: bool,
     /// The plane that it lies in, if it is flat.
     plane_world: Option<Vec4>,
 }
@@ -92,7 +96,8 @@ impl Items {
                 let plane_world =
                     plane_object.map(|plane| placed.world_from_object.inverse().transpose() * plane);
                 let plane_world = plane_world.map(|p| p / p.truncate().length()).filter(|p| p.is_finite());
-                Item { instance, variant, bounds_world, closed, plane_world }
+                let cut_out = geometry.meshes[placed.mesh].uv_alpha_offset.is_some();
+                Item { instance, variant, bounds_world, closed, cut_out, plane_world }
             })
             .collect();
         items.sort_by_key(|item| {
@@ -128,12 +133,14 @@ impl Items {
         batches(scene, seen.into_iter().map(|item| (item, false)), instances)
     }
 
-    /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing.
+    /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing. `cull` is the
+    /// pass's.
     pub fn casters(
         &self,
         scene: &Scene,
         (light, view): (&Light, &ShadowView),
         all: bool,
+        cull: Cull,
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<Batch> {
         let frustum = view.caster_frustum(light);
@@ -153,9 +160,18 @@ impl Items {
             }
             _ => true,
         };
-        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && !is_idle(item));
+        // What shadows nothing may still be what lies behind the nearest surface.
+        let layered = cull == Cull::Nothing;
+        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && (layered || !is_idle(item)));
+        let one_sided = |item: &Item| match cull {
+            Cull::BackOfClosed => item.closed && in_front(&item.bounds_world),
+            // What enters through a hole may meet the inside of a back face. Where the near plane, or the light itself, is inside
+            // of a solid, the way out is still through its back faces.
+            Cull::FrontOfClosed => item.closed && !item.cut_out,
+            Cull::Nothing | Cull::ByMaterial => false,
+        };
         let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
-        batches(scene, seen.map(|item| (item, item.closed && in_front(&item.bounds_world))), instances)
+        batches(scene, seen.map(|item| (item, one_sided(item))), instances)
     }
 }
 
@@ -166,26 +182,52 @@ fn batches<'a>(
     instances: &mut Vec<GpuInstance>,
 ) -> Vec<Batch> {
     let mut batches: Vec<Batch> = Vec::new();
-    for (item, back_hidden) in items {
+    for (item, one_sided) in items {
         let placed = &scene.instances[item.instance];
         let at = instances.len() as u32;
         instances.push(GpuInstance::new(&placed.world_from_object));
         match batches.last_mut() {
             Some(last)
-                if (last.mesh, last.variant, last.back_hidden)
-                    == (placed.mesh, item.variant, back_hidden) =>
+                if (last.mesh, last.variant, last.one_sided) == (placed.mesh, item.variant, one_sided) =>
             {
                 last.instances.end = at + 1;
             }
             _ => batches.push(Batch {
                 mesh: placed.mesh,
                 variant: item.variant,
-                back_hidden,
+                one_sided,
                 instances: at..at + 1,
             }),
         }
     }
     batches
+}
+
+/// The closed-mesh check of second-depth maps: what a user must know of casters that have no way out. `casters` are the draws of
+/// each view.
+pub fn open_casters(scene: &Scene, settings: &Settings, casters: &[Vec<Batch>]) -> Option<String> {
+    const NAMED: usize = 8;
+    if settings.combination.is_none_or(|c| c.bias != Bias::SecondDepth) {
+        return None;
+    }
+    let mut meshes: Vec<usize> = casters.iter().flatten().filter(|b| !b.one_sided).map(|b| b.mesh).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    let name = |mesh: &usize| match scene.meshes[*mesh].name.as_str() {
+        "" => format!("mesh {mesh}"),
+        name => format!("`{name}`"),
+    };
+    let named: Vec<String> = meshes.iter().take(NAMED).map(name).collect();
+    let more =
+        if meshes.len() > NAMED { format!(" and {} more", meshes.len() - NAMED) } else { String::new() };
+    (!meshes.is_empty()).then(|| {
+        format!(
+            "closed-mesh check: second-depth maps hold back faces only, and these casters are not closed solids (open edges, \
+             faces turned against each other, cut out, or deformed): {}{more}; both of their sides are drawn, so they may \
+             shadow themselves; use bias=midpoint or bias=auto",
+            named.join(", ")
+        )
+    })
 }
 
 /// What a list of draws asks of the GPU, counted on the CPU.

@@ -2,6 +2,7 @@
 
 use crate::draw_list::{Batch, Work};
 use crate::options::View;
+use crate::peeled::Peeled;
 use crate::pipelines::MeshTarget;
 use crate::readback;
 use crate::renderer::{Renderer, Shadows, Translucent};
@@ -9,8 +10,10 @@ use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
 use glam::Vec3;
 use std::time::Instant;
+use umbrage::CasterPipelines;
 use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
+use umbrage::peel::record_peel_layer;
 
 /// What a pass did.
 #[derive(Clone, Debug)]
@@ -50,6 +53,11 @@ impl Renderer<'_> {
         // 1. Each light's map.
         if let Some(shadows) = &self.shadows {
             for layer in 0..shadows.casters.len() {
+                if let Some(peeled) = &shadows.peeled {
+                    self.record_peel(&mut encoder, shadows, peeled, layer, &queries, pass);
+                    work.push(self.work_of(&shadows.blocking(layer)));
+                    pass += 1;
+                }
                 self.record_map(&mut encoder, shadows, layer, &queries, pass);
                 work.push(self.work_of(&shadows.blocking(layer)));
                 pass += 1;
@@ -156,9 +164,9 @@ impl Renderer<'_> {
     fn pass_names(&self) -> Vec<String> {
         let mut names = Vec::new();
         if let Some(shadows) = &self.shadows {
-            let translucent = shadows.translucent.iter().flat_map(|t| &t.passes);
-            let of_a_view: Vec<_> =
-                std::iter::once(&shadows.pass).chain(translucent).map(|p| p.name).collect();
+            let peel = shadows.peeled.as_ref().map(|peeled| peeled.pass.name);
+            let translucent = shadows.translucent.iter().flat_map(|t| &t.passes).map(|p| p.name);
+            let of_a_view: Vec<_> = peel.into_iter().chain([shadows.pass.name]).chain(translucent).collect();
             let views = 0..shadows.casters.len();
             names.extend(views.flat_map(|view| of_a_view.iter().map(move |name| format!("{name} {view}"))));
         }
@@ -191,13 +199,11 @@ impl Renderer<'_> {
             &shadows.pass,
             stamps,
             |recorded| {
+                if let Some(peeled) = &shadows.peeled {
+                    recorded.set_bind_group(1, peeled.peel.behind(0), &[]);
+                }
                 queries.count(recorded, pass, |recorded| {
-                    recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
-                    recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-                    recorded.set_vertex_buffer(1, self.instances.slice(..));
-                    for batch in &shadows.blocking(layer) {
-                        self.draw_caster(recorded, shadows, batch);
-                    }
+                    self.draw_casters(recorded, shadows, &shadows.pipelines, layer);
                 });
             },
         );
@@ -241,18 +247,50 @@ impl Renderer<'_> {
         });
     }
 
-    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, shadows: &Shadows, batch: &Batch) {
+    fn record_peel(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        shadows: &Shadows,
+        peeled: &Peeled,
+        layer: usize,
+        queries: &Queries,
+        pass: u32,
+    ) {
+        let stamps = queries.stamps(pass);
+        record_peel_layer(encoder, &peeled.peel, 0, &peeled.pass, stamps, |recorded| {
+            queries.count(recorded, pass, |recorded| {
+                self.draw_casters(recorded, shadows, &peeled.pipelines, layer);
+            });
+        });
+    }
+
+    fn draw_casters(
+        &self,
+        recorded: &mut wgpu::RenderPass<'_>,
+        shadows: &Shadows,
+        pipelines: &CasterPipelines,
+        layer: usize,
+    ) {
+        recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
+        recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
+        recorded.set_vertex_buffer(1, self.instances.slice(..));
+        for batch in &shadows.blocking(layer) {
+            self.draw_caster(recorded, pipelines, batch);
+        }
+    }
+
+    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, pipelines: &CasterPipelines, batch: &Batch) {
         let mesh = &self.geometry.meshes[batch.mesh];
         let cut_out = &self.materials[self.material_of_mesh[batch.mesh]].caster;
         if let (Some(group), Some(offset)) = (cut_out, mesh.uv_alpha_offset) {
-            recorded.set_pipeline(&shadows.pipelines.cut_out);
-            recorded.set_bind_group(1, group, &[]);
+            recorded.set_pipeline(&pipelines.cut_out);
+            recorded.set_bind_group(pipelines.cut_out_group, group, &[]);
             recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
         } else {
-            recorded.set_pipeline(match (batch.back_hidden, batch.variant.mirrored) {
-                (true, false) => &shadows.pipelines.closed,
-                (true, true) => &shadows.pipelines.closed_mirrored,
-                (false, _) => &shadows.pipelines.open,
+            recorded.set_pipeline(match (batch.one_sided, batch.variant.mirrored) {
+                (true, false) => &pipelines.closed,
+                (true, true) => &pipelines.closed_mirrored,
+                (false, _) => &pipelines.open,
             });
         }
         recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));

@@ -15,6 +15,7 @@ mod lights;
 mod materials;
 mod options;
 mod own_wgsl;
+mod peeled;
 pub mod picture;
 mod pipelines;
 mod readback;

@@ -1,12 +1,13 @@
 //! A scene made ready for one GPU: everything that a frame needs and no frame changes.
 
-use crate::draw_list::{Batch, Items, Work};
+use crate::draw_list::{Batch, Items, Work, open_casters};
 use crate::geometry::Geometry;
 use crate::gpu::Gpu;
 use crate::layout::{GpuFrame, GpuLight, MAX_LIGHTS};
 use crate::lights::{Lights, eye_of};
 use crate::materials::MaterialEntry;
 use crate::options::{RenderOptions, View};
+use crate::peeled::{Peeled, caster_passes};
 use crate::pipelines::{Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
 use crate::targets::Targets;
@@ -17,7 +18,7 @@ use glam::{Mat4, Vec3};
 use umbrage::caster::{GpuCasterView, NO_DEFORM};
 use umbrage::core::fit::{self, ShadowView};
 use umbrage::core::layout::GpuView;
-use umbrage::core::plan::{Draws, Pass, plan};
+use umbrage::core::plan::{Cull, Draws, Pass, plan};
 use umbrage::core::technique::Storage;
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
 use umbrage::{
@@ -30,6 +31,8 @@ use wgpu::util::DeviceExt;
 #[derive(Debug)]
 pub(crate) struct Shadows {
     pub pass: Pass,
+    /// What is drawn before each map, if anything.
+    pub peeled: Option<Peeled>,
     pub format: ChosenFormat,
     pub maps: ShadowMaps,
     pub pipelines: CasterPipelines,
@@ -137,12 +140,14 @@ impl<'a> Renderer<'a> {
         let solid = items.solid(scene, &frustum, &mut instances);
         let blended = items.blended(scene, &frustum, eye.position, &mut instances);
         let all_casters = options.all_casters || options.view.shows_map();
+        let cull = caster_passes(&options.settings).0.map_or(Cull::BackOfClosed, |pass| pass.cull);
         let casters: Vec<_> = lights
             .light_of_view
             .iter()
             .zip(&lights.views)
-            .map(|of| items.casters(scene, of, all_casters, &mut instances))
+            .map(|of| items.casters(scene, of, all_casters, cull, &mut instances))
             .collect();
+        let whole = open_casters(scene, &options.settings, &casters);
         let shadows = make_shadows(gpu, &options, format, &lights, casters, &caster_layout)?;
 
         let needs = shader_needs(scene, &options, &lights);
@@ -168,6 +173,7 @@ impl<'a> Renderer<'a> {
         });
         gpu.check()?;
         let mut warnings = lights.warnings;
+        warnings.extend(whole);
         if options.samples > 1 && !lit_at_once {
             let id = options.view.id();
             warnings
@@ -195,10 +201,11 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// Memory of all shadow maps, bytes.
+    /// Memory of all shadow maps, and of what is drawn on the way to them, bytes.
     pub fn shadow_memory_bytes(&self) -> u64 {
         let translucent = |s: &Shadows| s.translucent.as_ref().map_or(0, |t| t.maps.memory_bytes());
-        self.shadows.as_ref().map_or(0, |s| s.maps.memory_bytes() + translucent(s))
+        let peeled = |s: &Shadows| s.peeled.as_ref().map_or(0, |peeled| peeled.peel.memory_bytes());
+        self.shadows.as_ref().map_or(0, |s| s.maps.memory_bytes() + translucent(s) + peeled(s))
     }
 
     /// The depth format that the maps got, and why. `None` without maps.
@@ -367,9 +374,7 @@ fn make_shadows(
     casters: Vec<Vec<Batch>>,
     caster_layout: &wgpu::BindGroupLayout,
 ) -> Result<Option<Shadows>, RenderError> {
-    let Some(pass) = plan(&options.settings).into_iter().find(|pass| pass.draws == Draws::Casters) else {
-        return Ok(None);
-    };
+    let (Some(pass), peel_pass) = caster_passes(&options.settings) else { return Ok(None) };
     if lights.views.is_empty() {
         return Ok(None);
     }
@@ -380,6 +385,10 @@ fn make_shadows(
     let groups = [&pipelines.view_layout, caster_layout];
     let translucent = Translucent::new(gpu, options, &format, layers, groups)?;
     let maps = if translucent.is_some() { maps.keeping_scratch() } else { maps };
+    let size_texel = options.settings.map_size_texel();
+    let peeled = peel_pass
+        .map(|pass| Peeled::new(&gpu.device, pass, size_texel, caster_layout, deform))
+        .transpose()?;
     let stride = GpuCasterView::STRIDE as usize;
     let mut matrices = vec![0u8; lights.views.len() * stride];
     for (view, slot) in lights.views.iter().zip(matrices.chunks_mut(stride)) {
@@ -403,7 +412,7 @@ fn make_shadows(
             }),
         }],
     });
-    Ok(Some(Shadows { pass, format, maps, pipelines, view_group, casters, translucent }))
+    Ok(Some(Shadows { pass, peeled, format, maps, pipelines, view_group, casters, translucent }))
 }
 
 fn frame_group(

@@ -211,6 +211,56 @@ fn bias_matrix() {
     visibility("bias-matrix", &builtin("tilt"), "matrix-bias", &[("map_size", "64")]);
 }
 
+/// The negative control: the same map without its way of doing without a bias.
+fn unbiased(name: &str, bias: &str) {
+    let pairs = |bias| [("bias", bias), ("map_size", "512")];
+    visibility(name, &builtin("contact"), "linear", &pairs(bias));
+    let Some(gpu) = gpu() else { return };
+    let none = shoot(&gpu, &builtin("contact"), settings("linear", &pairs("none")), View::Visibility, SIDE);
+    check_differs(name, &none, "no bias");
+}
+
+#[test]
+fn bias_midpoint() {
+    unbiased("bias-midpoint", "midpoint");
+}
+
+#[test]
+fn bias_second_depth() {
+    unbiased("bias-second-depth", "second-depth");
+}
+
+/// Every storage, filter and kind of light: the scene must be in shadow where it is with automatic bias, but for edges.
+#[test]
+fn peeled_maps_agree_with_others_for_every_storage_filter_and_light() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("columns");
+    let spot = scene.lights[0].light;
+    let point = Light { kind: LightKind::Point, ..spot };
+    for (light, kind) in [(spot, "spot"), (sun_of(&scene), "directional"), (point, "point")] {
+        let scene = with_light(scene.clone(), light);
+        for bias in ["midpoint", "second-depth"] {
+            for (storage, filter) in Storage::ALL
+                .iter()
+                .map(|s| (*s, Filter::Linear))
+                .chain(Filter::ALL.iter().map(|f| (Storage::Auto, *f)))
+                .filter(|(storage, _)| *storage != Storage::Packed1)
+            {
+                let shot = |bias| {
+                    let filter = ("filter", filter.row().id);
+                    let pairs = [("storage", storage.row().id), filter, ("bias", bias), ("map_size", "512")];
+                    shoot(&gpu, &scene, settings("linear", &pairs), View::Visibility, 96)
+                };
+                let (plain, peeled) = (shot("auto"), shot(bias));
+                let off = plain.v.iter().zip(&peeled.v).filter(|(a, b)| (*a - *b).abs() > 0.5).count();
+                let dark = plain.v.iter().filter(|v| **v < 0.5).count();
+                println!("{kind} {bias} {} {}: {off} off, {dark} dark", storage.row().id, filter.row().id);
+                assert!(dark > 500 && off * 40 < 96 * 96, "{kind} {bias} {storage:?} {filter:?}: {off}");
+            }
+        }
+    }
+}
+
 #[test]
 fn directional() {
     let scene = builtin("contact");

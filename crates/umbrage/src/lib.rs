@@ -6,11 +6,13 @@
 pub mod caster;
 pub mod format;
 pub mod maps;
+pub mod peel;
 pub mod translucent;
 
 pub use caster::{CasterPipelines, CasterStreams, record_caster_pass};
 pub use format::{ChosenFormat, choose_format};
 pub use maps::ShadowMaps;
+pub use peel::{Peel, PeelPipelines, record_peel};
 pub use translucent::{TranslucentMaps, TranslucentPipelines, record_color_pass, record_nearest_pass};
 pub use umbrage_core as core;
 

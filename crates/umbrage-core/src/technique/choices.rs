@@ -50,6 +50,10 @@ const INTEL: Source =
     Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
 const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
+pub(super) const WOO: Source =
+    Source { paper: "Woo, The Shadow Depth Map Revisited, Graphics Gems III", year: 1992 };
+pub(super) const WANG_MOLNAR: Source =
+    Source { paper: "Wang and Molnar, Second-Depth Shadow Mapping", year: 1994 };
 
 choices! {
     /// How depth is kept.
@@ -230,6 +234,22 @@ choices! {
             summary: "each texel is compared with the receiver's plane at the texel's centre",
             source: Some(Source { paper: "Schuler, Eliminating Surface Acne with Gradient Shadow Mapping", year: 2005 }),
             params: &[PLANE_MARGIN],
+            ..EMPTY
+        };
+        /// Halfway between the nearest and the second-nearest surface.
+        Midpoint = Choice {
+            id: "midpoint",
+            label: "Midpoint",
+            summary: "the map holds the middle between nearest and second-nearest surface, by two passes of depth peeling",
+            source: Some(WOO),
+            ..EMPTY
+        };
+        /// Back faces only.
+        SecondDepth = Choice {
+            id: "second-depth",
+            label: "Second depth",
+            summary: "the map holds back faces only; casters that are not closed are drawn whole, and reported",
+            source: Some(WANG_MOLNAR),
             ..EMPTY
         };
     }
@@ -510,6 +530,11 @@ impl Combination {
         if warped && self.storage.is_color() {
             return Some(
                 "colour storages hold distance along the light's axis, and a warped map's planes are planes of depth only",
+            );
+        }
+        if self.colors_light() && matches!(self.bias, Bias::Midpoint | Bias::SecondDepth) {
+            return Some(
+                "colours end at the first opaque surface, which midpoint and second-depth maps do not hold",
             );
         }
         if self.filter == Filter::MultiView && self.projection != Projection::Fitted {

@@ -203,6 +203,22 @@ pub const TECHNIQUES: &[Technique] = &[
         source: Some(EVERITT),
         combination: Some(Combination { bias: Bias::Matrix, ..LINEAR }),
     },
+    Technique {
+        id: "midpoint",
+        label: "Midpoint map",
+        summary: "the middle between the two nearest surfaces in place of a bias: no number to set, twice the drawing",
+        family: Family::Map,
+        source: Some(choices::WOO),
+        combination: Some(Combination { bias: Bias::Midpoint, ..LINEAR }),
+    },
+    Technique {
+        id: "second-depth",
+        label: "Second-depth map",
+        summary: "back faces of closed casters in place of a bias: no number to set, no cost; open casters shadow themselves",
+        family: Family::Map,
+        source: Some(choices::WANG_MOLNAR),
+        combination: Some(Combination { bias: Bias::SecondDepth, ..LINEAR }),
+    },
 ];
 
 /// The technique of that name.
