@@ -47,6 +47,9 @@ pub enum RenderError {
     /// The view shows a light that is not there or has no map.
     #[error("{0}")]
     View(String),
+    /// What a renderer was told to change cannot be changed so.
+    #[error("{0}")]
+    Change(String),
     /// The GPU ran out of memory, or refused a command.
     #[error("the GPU refused the frame: {0}")]
     Gpu(String),
