@@ -43,7 +43,7 @@ struct State {
     /// The set that a frame is being recorded with.
     leased: Option<usize>,
     stop: bool,
-    /// Why the thread gave up.
+    /// Why the thread gave up: every frame from then on says so.
     failed: Option<RenderError>,
     /// Maps drawn since a frame last asked.
     drawn: u64,
@@ -99,8 +99,8 @@ impl MapThread {
     /// Tells it of the world as it is now; gives the set to look up until [`Self::release`], and how many maps were drawn since the last call.
     pub fn exchange(&self, world: &Arc<World>) -> Result<(usize, u64), RenderError> {
         let mut state = locked(&self.shared.state);
-        if let Some(error) = state.failed.take() {
-            return Err(error);
+        if let Some(error) = &state.failed {
+            return Err(error.clone());
         }
         if state.world.version != world.version {
             state.world = Arc::clone(world);

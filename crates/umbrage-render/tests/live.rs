@@ -44,6 +44,9 @@ fn two_places() -> Scene {
             scene.instances.push(Instance { name: String::new(), mesh, world_from_object });
         }
         let light = Light::spot(aim + Vec3::new(0.7, 6.0, 0.4), aim, 0.3, 0.4);
+        // Planes that are fitted would follow the box, and the matrices with them.
+        let planes = (x > 0.0).then_some((1.0, 9.0));
+        let light = Light { near_m: planes.map(|p| p.0), far_m: planes.map(|p| p.1), ..light };
         scene.lights.push(SceneLight { name: String::new(), light, cookie: None });
     }
     let camera = Camera::look_at(Vec3::new(0.0, 9.0, 12.0), Vec3::ZERO, 1.0, 0.1, 60.0);
@@ -210,18 +213,20 @@ fn a_light_that_moves_has_its_own_maps_drawn_again() {
 #[test]
 fn a_light_may_lose_and_win_its_map() {
     let Some(gpu) = gpu() else { return };
-    let mut scene = two_places();
-    let at = scene.lights[0].light;
-    let away = Light { direction_world: -at.direction_world, ..at };
-    scene.lights[0].light = away;
-    let mut renderer = renderer(&gpu, &scene);
-    assert_eq!(maps(&frame(&mut renderer).0), (1, 0));
-    for light in [at, away, at] {
-        scene.lights[0].light = light;
-        renderer.set_light(0, &light).expect("lit");
-        let (report, picture) = frame(&mut renderer);
-        assert_eq!(report.maps_drawn + report.maps_reused, if light == at { 2 } else { 1 });
-        assert!(picture == fresh(&gpu, &scene), "not the picture of a fresh renderer");
+    for index in [0, 1] {
+        let mut scene = two_places();
+        let at = scene.lights[index].light;
+        let away = Light { direction_world: -at.direction_world, near_m: None, far_m: None, ..at };
+        scene.lights[index].light = away;
+        let mut renderer = renderer(&gpu, &scene);
+        assert_eq!(maps(&frame(&mut renderer).0), (1, 0));
+        for light in [at, away, at] {
+            scene.lights[index].light = light;
+            renderer.set_light(index, &light).expect("lit");
+            let (report, picture) = frame(&mut renderer);
+            assert_eq!(report.maps_drawn + report.maps_reused, if light == at { 2 } else { 1 });
+            assert!(picture == fresh(&gpu, &scene), "light {index}: not the picture of a fresh renderer");
+        }
     }
 }
 
@@ -296,6 +301,7 @@ fn maps_that_lag_are_looked_up_with_their_own_matrices() {
         // Looked up with the new matrices, all of the box's shadow would shift against the floor.
         let off = picture.iter().zip(&before).filter(|(a, b)| a.abs_diff(**b) > 40).count();
         assert!(off < 12, "{off} channels jump");
+        assert!(picture != before, "the light does not shine from where it is");
     }
     lagging.schedule_maps(MapSchedule::EachFrame).expect("a schedule");
     let (report, picture) = frame(&mut lagging);
