@@ -2,7 +2,7 @@
 
 mod bench;
 
-pub use bench::BenchArgs;
+pub use bench::{BenchArgs, BenchCommand, ThreadedArgs};
 
 use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

@@ -1,6 +1,6 @@
 //! `umbrage bench`: what techniques cost, frame by frame in turns.
 
-use crate::args::BenchArgs;
+use crate::args::{BenchArgs, BenchCommand};
 use crate::fault::{Fault, say, tell};
 use crate::json::{self, Machine, MapFormat, PassJson, SceneJson};
 use crate::setup::{self, Stage};
@@ -57,6 +57,9 @@ struct Row {
 /// # Errors
 /// As `umbrage render`.
 pub fn run(args: &BenchArgs) -> Result<(), Fault> {
+    if let Some(BenchCommand::Threaded(args)) = &args.other {
+        return crate::threaded::run(args);
+    }
     let ids = techniques(&args.techniques);
     all_settings(&ids, args, None)?;
     let stage = setup::stage(&args.scene)?;
