@@ -12,8 +12,10 @@ use std::time::{Duration, Instant};
 use umbrage_render::{FrameReport, Gpu, MapSchedule, Measure, RenderOptions, Renderer};
 use umbrage_scene::{Scene, plane_of};
 
-/// Each row is measured in so many turns, so that what else the machine does meets all of them.
-const TURNS: u32 = 2;
+/// Rows are measured in turns of so many seconds, two at least, so that what else the machine does meets all of them.
+const TURN_S: f32 = 0.5;
+/// Frames of a turn that do not count: drivers compile in the first, and maps are not yet as old as they get.
+const WARM_UP: u32 = 4;
 /// Pixels, unless others are asked for.
 const SIZE: UVec2 = UVec2::new(640, 360);
 /// The caster's way around, seconds.
@@ -101,13 +103,13 @@ pub fn run(args: &ThreadedArgs) -> Result<(), Fault> {
 
     let mut rows = all_rows(args);
     let progress = std::io::stderr().is_terminal();
-    let turn = Duration::from_secs_f32(args.seconds / TURNS as f32);
-    let mut count = 0;
-    for _ in 0..TURNS {
+    let turns = (args.seconds / TURN_S).ceil().max(2.0);
+    let turn = Duration::from_secs_f32(args.seconds / turns);
+    let (mut count, all) = (0, turns as usize * rows.len());
+    for _ in 0..turns as usize {
         for row in &mut rows {
             count += 1;
             if progress {
-                let all = TURNS as usize * 12;
                 let _ = write!(std::io::stderr(), "\rmeasurement {count} of {all}");
             }
             measure(&mut renderers[usize::from(row.loads_maps)], row, &stage, mover, turn)?;
@@ -189,15 +191,21 @@ fn measure(
     let rest = stage.scene.instances[mover].world_from_object;
     let radius_m = 0.05 * stage.scene.bounds().radius();
     renderer.schedule_maps(row.schedule)?;
-    renderer.frame(Measure::Frame)?; // Drivers compile in the first.
-    let begun = Instant::now();
-    let mut start = begun;
-    while start - begun < turn {
-        let angle = (start - begun).as_secs_f32() / ROUND_S * std::f32::consts::TAU;
+    let clock = Instant::now();
+    let mut frame = || {
+        let angle = clock.elapsed().as_secs_f32() / ROUND_S * std::f32::consts::TAU;
         let offset_m = radius_m * Vec3::new(angle.cos(), 0.0, angle.sin());
         renderer.place(mover, Mat4::from_translation(offset_m) * rest)?;
         keep_busy(row.frame_load);
-        row.reports.push(renderer.frame(Measure::Frame)?);
+        renderer.frame(Measure::Frame)
+    };
+    for _ in 0..WARM_UP {
+        frame()?;
+    }
+    let begun = Instant::now();
+    let mut start = begun;
+    while start - begun < turn {
+        row.reports.push(frame()?);
         let end = Instant::now();
         row.frames_ms.push((end - start).as_secs_f64() * 1e3);
         start = end;

@@ -58,7 +58,7 @@ pub enum BenchCommand {
 
 const THREADED_EXAMPLES: &str = "Examples:
   umbrage bench threaded
-  umbrage bench threaded builtin:columns --interval-ms 33 --map-load-ms 20
+  umbrage bench threaded builtin:columns --interval-ms 100 --map-load-ms 20
   umbrage bench threaded --seconds 5 --frame-load-ms 0 --json
 
 The scene's largest caster that is not flat moves in a circle. There are rows without load, with load for each map, for each
@@ -82,7 +82,7 @@ pub struct ThreadedArgs {
     pub set: Vec<Pair>,
 
     /// How often maps are drawn where not every frame draws them, milliseconds
-    #[arg(long, value_name = "MS", default_value_t = 16.0, value_parser = specs::milliseconds, allow_negative_numbers = true, help_heading = "Threads")]
+    #[arg(long, value_name = "MS", default_value_t = 50.0, value_parser = specs::milliseconds, allow_negative_numbers = true, help_heading = "Threads")]
     pub interval_ms: f32,
 
     /// Simulated work of the application for each map that is drawn, milliseconds of one core
