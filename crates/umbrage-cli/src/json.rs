@@ -26,6 +26,11 @@ pub struct RenderJson {
     pub frame_ms: f64,
     pub frames_ms: Vec<f64>,
     pub shadow_memory_bytes: u64,
+    /// Of each light's maps.
+    pub shadow_memory_per_light_bytes: Vec<u64>,
+    /// In all frames together, also those that are not timed.
+    pub maps_drawn: u64,
+    pub maps_reused: u64,
     pub exposure: f64,
     pub timings: Timings,
     pub output: String,

@@ -8,7 +8,7 @@ use crate::text;
 use std::path::Path;
 use std::time::Instant;
 use umbrage_render::picture::write_png;
-use umbrage_render::{Gpu, Measure, PassReport, RenderOptions, Renderer, View};
+use umbrage_render::{FrameReport, Gpu, Measure, PassReport, RenderOptions, Renderer, View};
 
 /// Draws it, writes it, says what it is.
 ///
@@ -23,14 +23,15 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
     let options = RenderOptions {
         view,
         shown_light: args.light_index,
+        reuse: args.reuse,
         ..setup::options(&args.scene, &stage, settings)?
     };
 
     let start = Instant::now();
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
-    let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
+    let mut renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
     let setup_ms = ms_since(start);
-    let drawn = draw(&renderer, args.frames, args.statistics)?;
+    let drawn = draw(&mut renderer, args.frames, args.statistics)?;
     let pixels = renderer.picture()?;
     gpu.check()?;
 
@@ -59,17 +60,27 @@ struct Drawn {
     frames_ms: Vec<f64>,
     /// Of one frame, with all that could be measured of it.
     passes: Vec<PassReport>,
+    /// In all frames together.
+    maps_drawn: u64,
+    maps_reused: u64,
 }
 
 /// The frames; the first is dropped when there are several, because drivers compile then. Passes are measured in a frame
 /// of their own, because that takes time too; a single frame has to do for both.
-fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, Fault> {
+fn draw(renderer: &mut Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, Fault> {
     let frames = if count > 1 { count } else { 0 };
     let mut frames_ms = Vec::new();
+    let (mut maps_drawn, mut maps_reused) = (0, 0);
+    let mut frame = |measure| -> Result<FrameReport, Fault> {
+        let report = renderer.frame(measure)?;
+        maps_drawn += report.maps_drawn;
+        maps_reused += report.maps_reused;
+        Ok(report)
+    };
     for _ in 0..frames {
-        frames_ms.push(renderer.frame(Measure::Frame)?.frame_ms);
+        frames_ms.push(frame(Measure::Frame)?.frame_ms);
     }
-    let measured = renderer.frame(Measure::Passes)?;
+    let measured = frame(Measure::Passes)?;
     if frames_ms.is_empty() {
         frames_ms.push(measured.frame_ms);
     } else {
@@ -77,11 +88,14 @@ fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, 
     }
     let mut passes = measured.passes;
     if statistics {
-        for (pass, counted) in passes.iter_mut().zip(renderer.frame(Measure::Counts)?.passes) {
-            pass.statistics = counted.statistics;
+        let counted = frame(Measure::Counts)?.passes;
+        for pass in &mut passes {
+            // By name: a map that is reused has no pass any more.
+            let same = counted.iter().find(|other| other.name == pass.name);
+            pass.statistics = same.and_then(|other| other.statistics);
         }
     }
-    Ok(Drawn { frames_ms, passes })
+    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused })
 }
 
 /// Can the picture be written there? Asked before any work.
@@ -138,6 +152,9 @@ fn report(
         frame_ms,
         frames_ms: drawn.frames_ms.clone(),
         shadow_memory_bytes: renderer.shadow_memory_bytes(),
+        shadow_memory_per_light_bytes: renderer.shadow_memory_of_lights(),
+        maps_drawn: drawn.maps_drawn,
+        maps_reused: drawn.maps_reused,
         exposure: json::decimal(renderer.exposure()),
         timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
         output: args.output.display().to_string(),

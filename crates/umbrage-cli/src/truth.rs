@@ -143,7 +143,7 @@ fn final_picture(args: &TruthArgs, stage: &Stage, found: &[Visibility]) -> Resul
         ..setup::options(&args.scene, stage, settings)?
     };
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
-    let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
+    let mut renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
     renderer.frame(Measure::Frame)?;
     let pixels = renderer.picture()?;
     gpu.check()?;

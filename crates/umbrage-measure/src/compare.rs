@@ -285,6 +285,8 @@ impl<'a> Shot<'a> {
             view,
             shown_light: 0,
             samples: 1,
+            // What a map costs is asked, not what it saves to have one.
+            reuse: false,
             given: None,
             ..self.options.clone()
         };
@@ -292,7 +294,7 @@ impl<'a> Shot<'a> {
     }
 
     fn visibility(&self, settings: &Settings, warnings: &mut Vec<String>) -> Result<Answer, MeasureError> {
-        let renderer = self.renderer(settings, View::Visibility)?;
+        let mut renderer = self.renderer(settings, View::Visibility)?;
         renderer.frame(Measure::Frame)?;
         for warning in renderer.warnings() {
             if !warnings.contains(warning) {
@@ -312,7 +314,7 @@ impl<'a> Shot<'a> {
             given: Some(given),
             ..self.options.clone()
         };
-        let renderer = Renderer::new(self.gpu, self.scene, self.camera, options)?;
+        let mut renderer = Renderer::new(self.gpu, self.scene, self.camera, options)?;
         renderer.frame(Measure::Frame)?;
         Ok(renderer.picture()?)
     }
@@ -337,9 +339,9 @@ fn row(
     at: &At<'_>,
     frames: u32,
 ) -> Result<Row, MeasureError> {
-    let with = shot.renderer(settings, View::Final)?;
-    let without = shot.renderer(&unshadowed()?, View::Final)?;
-    let cost = Cost::measure(&with, &without, settings, frames)?;
+    let mut with = shot.renderer(settings, View::Final)?;
+    let mut without = shot.renderer(&unshadowed()?, View::Final)?;
+    let cost = Cost::measure(&mut with, &mut without, settings, frames)?;
     let picture = with.picture()?;
     let size = truth.size();
     let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);

@@ -66,7 +66,7 @@ fn shot(gpu: &Gpu, scene: &Scene, size: UVec2, with: &Settings) -> Shot {
     let camera = &scene.cameras[0].camera;
     let light = &scene.lights[0].light;
     let options = RenderOptions { size, view: View::Visibility, ..RenderOptions::new(with.clone()) };
-    let renderer = Renderer::new(gpu, scene, camera, options).expect("a renderer");
+    let mut renderer = Renderer::new(gpu, scene, camera, options).expect("a renderer");
     renderer.frame(Measure::Frame).expect("a frame");
     let v = renderer.visibility().expect("V");
     let rays = Rays::new(scene).expect("rays");

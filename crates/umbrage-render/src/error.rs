@@ -57,6 +57,9 @@ pub enum RenderError {
         /// Where and why, one line.
         reason: String,
     },
+    /// What a renderer was told to change cannot be changed so.
+    #[error("{0}")]
+    Change(String),
     /// The GPU ran out of memory, or refused a command.
     #[error("the GPU refused the frame: {0}")]
     Gpu(String),

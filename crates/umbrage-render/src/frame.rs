@@ -2,18 +2,17 @@
 
 use crate::draw_list::{Batch, Work};
 use crate::options::View;
-use crate::peeled::Peeled;
 use crate::pipelines::MeshTarget;
 use crate::readback;
-use crate::renderer::{Renderer, Shadows, Translucent};
+use crate::renderer::Renderer;
+use crate::threaded::{MapSchedule, locked};
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
 use glam::Vec3;
+use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Instant;
-use umbrage::CasterPipelines;
-use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
-use umbrage::peel::record_peel_layer;
 
 /// What a pass did.
 #[derive(Clone, Debug)]
@@ -31,43 +30,83 @@ pub struct PassReport {
 /// What a frame did.
 #[derive(Clone, Debug)]
 pub struct FrameReport {
-    /// Milliseconds from the first command to the GPU's word that all is done.
+    /// Milliseconds from the first command to the GPU's word that all is done. Fits, culling and uploads for what moved are
+    /// in it.
     pub frame_ms: f64,
-    /// In the order in which they ran.
+    /// In the order in which they ran. A map that is reused has no pass.
     pub passes: Vec<PassReport>,
+    /// Maps that were drawn for this frame; by a thread: since the frame before.
+    pub maps_drawn: u64,
+    /// Maps that were looked up as they were.
+    pub maps_reused: u64,
+    /// How many frames ago the world was last as the maps show it. 0 unless a [`crate::MapSchedule`] lets them lag.
+    pub maps_age_frames: u64,
+    /// The same in milliseconds, from frame start to frame start.
+    pub maps_age_ms: f64,
+}
+
+/// When each state of the world was last that of a frame: version, number of the frame, its start.
+#[derive(Debug, Default)]
+pub(crate) struct Ages {
+    frames: u64,
+    last_seen: VecDeque<(u64, u64, Instant)>,
+}
+
+impl Ages {
+    /// A frame begins, in this state of the world.
+    fn begin(&mut self, version: u64, start: Instant) {
+        self.frames += 1;
+        self.last_seen.retain(|seen| seen.0 != version);
+        self.last_seen.push_back((version, self.frames, start));
+    }
+
+    /// Age of what shows `version`, in frames and milliseconds. States before it are forgotten. What no frame was in (it was
+    /// drawn before the first) is as old as the oldest known.
+    fn of(&mut self, version: u64, start: Instant) -> (u64, f64) {
+        while self.last_seen.len() > 1 && self.last_seen.front().is_some_and(|seen| seen.0 < version) {
+            self.last_seen.pop_front();
+        }
+        self.last_seen.front().map_or((0, 0.0), |(_, frame, at)| {
+            (self.frames - frame, start.saturating_duration_since(*at).as_secs_f64() * 1e3)
+        })
+    }
 }
 
 impl Renderer<'_> {
-    /// Draws one frame, waits for it, and measures what was asked for, where the adapter can.
+    /// Draws one frame, waits for it, and measures what was asked for, where the adapter can. Maps that hold what they
+    /// should are looked up as they are.
     ///
     /// # Errors
-    /// [`RenderError::Gpu`] when the device refuses a command or is lost.
-    pub fn frame(&self, measure: Measure) -> Result<FrameReport, RenderError> {
-        let names = self.pass_names();
-        let queries = Queries::new(self.gpu, names.len() as u32, measure);
+    /// [`RenderError::Gpu`] when the device refuses a command or is lost; [`RenderError::View`] and [`RenderError::Shadow`]
+    /// when what was changed leaves nothing to show or no room.
+    pub fn frame(&mut self, measure: Measure) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
+        let (index, by_thread) = match &self.thread {
+            Some(thread) => thread.exchange(&self.world)?,
+            None => (0, 0),
+        };
+        let set = Arc::clone(&self.sets[index]);
+        let mut set = locked(&set);
+        let drawn = if self.are_maps_due(start) {
+            self.maker.refresh(&mut set, &self.world)?;
+            set.stale(!self.options.reuse)
+        } else {
+            Vec::new()
+        };
+        self.tell(index, &set)?;
+
+        let names = self.pass_names(&drawn);
+        let queries = Queries::new(self.gpu, names.len() as u32, measure);
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         let mut pass = 0;
         let mut work = Vec::with_capacity(names.len());
-        // 1. Each light's map.
-        if let Some(shadows) = &self.shadows {
-            for layer in 0..shadows.casters.len() {
-                if let Some(peeled) = &shadows.peeled {
-                    self.record_peel(&mut encoder, shadows, peeled, layer, &queries, pass);
-                    work.push(self.work_of(&shadows.blocking(layer)));
-                    pass += 1;
-                }
-                self.record_map(&mut encoder, shadows, layer, &queries, pass);
-                work.push(self.work_of(&shadows.blocking(layer)));
-                pass += 1;
-                if let Some(translucent) = &shadows.translucent {
-                    self.record_translucent(&mut encoder, (shadows, translucent), layer, &queries, pass);
-                    let drawn = self.work_of(&shadows.tinting(layer));
-                    work.extend([drawn; 2]);
-                    pass += 2;
-                }
-            }
+        // 1. Each light's map that does not hold what it should.
+        for layer in &drawn {
+            self.maker.record(&mut encoder, &mut set, *layer, Some((&queries, pass)));
+            let of_map = self.maker.work(&set, *layer);
+            pass += of_map.len() as u32;
+            work.extend(of_map);
         }
         // 2. Surfaces, into the G-buffer or lit at once.
         self.record_surfaces(&mut encoder, &queries, pass);
@@ -85,8 +124,13 @@ impl Renderer<'_> {
             work.push(self.work_of(&self.blended));
         }
         queries.resolve(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
-        readback::wait(self.gpu)?;
+        let submitted = self.gpu.queue.submit([encoder.finish()]);
+        if let Some(thread) = &self.thread {
+            thread.release();
+        }
+        let (count, version) = (set.count() as u64, set.version.unwrap_or(self.world.version));
+        drop(set);
+        readback::wait_for(self.gpu, Some(submitted))?;
         let frame_ms = start.elapsed().as_secs_f64() * 1e3;
         let measured = queries.read(self.gpu);
         let passes = names
@@ -95,7 +139,24 @@ impl Renderer<'_> {
             .zip(measured)
             .map(|((name, work), (gpu_ms, statistics))| PassReport { name, work, gpu_ms, statistics })
             .collect();
-        Ok(FrameReport { frame_ms, passes })
+        let maps_drawn = if self.thread.is_some() { by_thread } else { drawn.len() as u64 };
+        self.ages.begin(self.world.version, start);
+        let (maps_age_frames, maps_age_ms) = self.ages.of(version, start);
+        let maps_reused = count.saturating_sub(maps_drawn);
+        Ok(FrameReport { frame_ms, passes, maps_drawn, maps_reused, maps_age_frames, maps_age_ms })
+    }
+
+    /// Is it the frame's to draw maps, and time to?
+    fn are_maps_due(&mut self, now: Instant) -> bool {
+        let due = match self.schedule {
+            MapSchedule::EachFrame => true,
+            MapSchedule::Every(interval) => self.drawn_at.is_none_or(|at| now >= at + interval),
+            MapSchedule::Threaded(_) => false,
+        };
+        if due {
+            self.drawn_at = Some(now);
+        }
+        due
     }
 
     /// The picture: RGBA, 8 bits each, rows from the top. V is grey, or in the colours of the light that arrives.
@@ -161,15 +222,11 @@ impl Renderer<'_> {
         !self.blended.is_empty() && matches!(self.options.view, View::Final | View::Light)
     }
 
-    fn pass_names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        if let Some(shadows) = &self.shadows {
-            let peel = shadows.peeled.as_ref().map(|peeled| peeled.pass.name);
-            let translucent = shadows.translucent.iter().flat_map(|t| &t.passes).map(|p| p.name);
-            let of_a_view: Vec<_> = peel.into_iter().chain([shadows.pass.name]).chain(translucent).collect();
-            let views = 0..shadows.casters.len();
-            names.extend(views.flat_map(|view| of_a_view.iter().map(move |name| format!("{name} {view}"))));
-        }
+    fn pass_names(&self, drawn: &[usize]) -> Vec<String> {
+        let of_map = self.maker.pass_names();
+        let of_view =
+            |view: &usize| of_map.iter().map(move |name| format!("{name} {view}")).collect::<Vec<_>>();
+        let mut names: Vec<String> = drawn.iter().flat_map(of_view).collect();
         names.push(if self.screen.is_some() { "surfaces" } else { "lit surfaces" }.to_owned());
         if self.screen.is_some() {
             names.push(match self.options.view {
@@ -181,120 +238,6 @@ impl Renderer<'_> {
             names.push("blended".to_owned());
         }
         names
-    }
-
-    fn record_map(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        shadows: &Shadows,
-        layer: usize,
-        queries: &Queries,
-        pass: u32,
-    ) {
-        let stamps = queries.stamps(pass);
-        umbrage::record_caster_pass(
-            encoder,
-            &shadows.maps,
-            layer as u32,
-            &shadows.pass,
-            stamps,
-            |recorded| {
-                if let Some(peeled) = &shadows.peeled {
-                    recorded.set_bind_group(1, peeled.peel.behind(0), &[]);
-                }
-                queries.count(recorded, pass, |recorded| {
-                    self.draw_casters(recorded, shadows, &shadows.pipelines, layer);
-                });
-            },
-        );
-    }
-
-    /// The colours of a layer, and the nearest translucent casters: passes `pass` and the next.
-    fn record_translucent(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        (shadows, translucent): (&Shadows, &Translucent),
-        layer: usize,
-        queries: &Queries,
-        pass: u32,
-    ) {
-        let [colors, nearest] = &translucent.passes;
-        let draw = |recorded: &mut wgpu::RenderPass<'_>, pass, pipeline: &wgpu::RenderPipeline| {
-            queries.count(recorded, pass, |recorded| {
-                recorded.set_pipeline(pipeline);
-                recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
-                recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-                recorded.set_vertex_buffer(1, self.instances.slice(..));
-                for batch in &shadows.tinting(layer) {
-                    let mesh = &self.geometry.meshes[batch.mesh];
-                    let group = &self.materials[self.material_of_mesh[batch.mesh]].caster;
-                    let (Some(group), Some(offset)) = (group, mesh.uv_color_offset) else { continue };
-                    recorded.set_bind_group(1, group, &[]);
-                    recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));
-                    recorded.set_vertex_buffer(2, self.geometry.uv_color.slice(offset..));
-                    recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
-                }
-            });
-        };
-        let (maps, pipelines, at) = (&translucent.maps, &translucent.pipelines, layer as u32);
-        let stamps = queries.stamps(pass);
-        umbrage::record_color_pass(encoder, &shadows.maps, maps, at, colors, stamps, |recorded| {
-            draw(recorded, pass, &pipelines.color);
-        });
-        let stamps = queries.stamps(pass + 1);
-        umbrage::record_nearest_pass(encoder, maps, at, nearest, stamps, |recorded| {
-            draw(recorded, pass + 1, &pipelines.nearest);
-        });
-    }
-
-    fn record_peel(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        shadows: &Shadows,
-        peeled: &Peeled,
-        layer: usize,
-        queries: &Queries,
-        pass: u32,
-    ) {
-        let stamps = queries.stamps(pass);
-        record_peel_layer(encoder, &peeled.peel, 0, &peeled.pass, stamps, |recorded| {
-            queries.count(recorded, pass, |recorded| {
-                self.draw_casters(recorded, shadows, &peeled.pipelines, layer);
-            });
-        });
-    }
-
-    fn draw_casters(
-        &self,
-        recorded: &mut wgpu::RenderPass<'_>,
-        shadows: &Shadows,
-        pipelines: &CasterPipelines,
-        layer: usize,
-    ) {
-        recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
-        recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        recorded.set_vertex_buffer(1, self.instances.slice(..));
-        for batch in &shadows.blocking(layer) {
-            self.draw_caster(recorded, pipelines, batch);
-        }
-    }
-
-    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, pipelines: &CasterPipelines, batch: &Batch) {
-        let mesh = &self.geometry.meshes[batch.mesh];
-        let cut_out = &self.materials[self.material_of_mesh[batch.mesh]].caster;
-        if let (Some(group), Some(offset)) = (cut_out, mesh.uv_alpha_offset) {
-            recorded.set_pipeline(&pipelines.cut_out);
-            recorded.set_bind_group(pipelines.cut_out_group, group, &[]);
-            recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
-        } else {
-            recorded.set_pipeline(match (batch.one_sided, batch.variant.mirrored) {
-                (true, false) => &pipelines.closed,
-                (true, true) => &pipelines.closed_mirrored,
-                (false, _) => &pipelines.open,
-            });
-        }
-        recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));
-        recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
     }
 
     fn record_surfaces(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
@@ -331,6 +274,7 @@ impl Renderer<'_> {
 
     fn record_screen(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
         let (Some(pipeline), Some(gbuffer)) = (&self.screen, &self.gbuffer_group) else { return };
+        let Some(frame_group) = &self.frame_group else { return };
         let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("screen"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -354,7 +298,7 @@ impl Renderer<'_> {
         });
         queries.count(&mut recorded, pass, |recorded| {
             recorded.set_pipeline(pipeline);
-            recorded.set_bind_group(0, &self.frame_group, &[]);
+            recorded.set_bind_group(0, frame_group, &[]);
             recorded.set_bind_group(1, gbuffer, &[]);
             recorded.draw(0..3, 0..1);
         });
@@ -383,9 +327,10 @@ impl Renderer<'_> {
     }
 
     fn draw_meshes(&self, recorded: &mut wgpu::RenderPass<'_>, batches: &[Batch], target: MeshTarget) {
-        recorded.set_bind_group(0, &self.frame_group, &[]);
+        let Some(frame_group) = &self.frame_group else { return };
+        recorded.set_bind_group(0, frame_group, &[]);
         recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        recorded.set_vertex_buffer(1, self.instances.slice(..));
+        recorded.set_vertex_buffer(1, self.instances.buffer.slice(..));
         for batch in batches {
             let mesh = &self.geometry.meshes[batch.mesh];
             let Some(pipeline) = self.mesh_pipelines.get(target, batch.variant) else { continue };
@@ -396,19 +341,6 @@ impl Renderer<'_> {
             recorded.set_vertex_buffer(2, attributes.slice(mesh.attribute_offset..));
             recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
         }
-    }
-}
-
-impl Shadows {
-    /// The draws of a view's map: without translucent casters where those colour the light.
-    fn blocking(&self, layer: usize) -> Vec<Batch> {
-        let colors = self.translucent.is_some();
-        self.casters[layer].iter().filter(|batch| !(colors && batch.variant.blend)).cloned().collect()
-    }
-
-    /// The draws of translucent casters.
-    fn tinting(&self, layer: usize) -> Vec<Batch> {
-        self.casters[layer].iter().filter(|batch| batch.variant.blend).cloned().collect()
     }
 }
 

@@ -157,7 +157,8 @@ impl Geometry {
                 usage,
             })
         };
-        let vertex = wgpu::BufferUsages::VERTEX;
+        // What may be posed anew is written to again.
+        let vertex = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
         Self {
             positions: buffer("positions", bytemuck::cast_slice(&positions), vertex),
             normals: buffer("normals", bytemuck::cast_slice(&normals), vertex),
@@ -166,6 +167,18 @@ impl Geometry {
             uv_color: buffer("caster uv and colour", bytemuck::cast_slice(&uv_color), vertex),
             indices: buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
             meshes,
+        }
+    }
+
+    /// Writes a mesh's positions and normals (with what is interleaved with them) over those of mesh `index`, which has as many.
+    pub fn repose(&self, queue: &wgpu::Queue, index: usize, mesh: &Mesh) {
+        let range = &self.meshes[index];
+        queue.write_buffer(&self.positions, range.position_offset, bytemuck::cast_slice(&mesh.positions));
+        if range.full {
+            let vertices: Vec<GpuFullVertex> = full_vertices(mesh).collect();
+            queue.write_buffer(&self.full, range.attribute_offset, bytemuck::cast_slice(&vertices));
+        } else {
+            queue.write_buffer(&self.normals, range.attribute_offset, bytemuck::cast_slice(&mesh.normals));
         }
     }
 }

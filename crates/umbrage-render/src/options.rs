@@ -98,12 +98,18 @@ pub struct RenderOptions {
     /// Draw every caster into the maps, also those that can be shown to shadow nothing. Costs time and changes no
     /// picture but those of the maps themselves, which always have them all. Default false.
     pub all_casters: bool,
+    /// Draw a map again only when its light, its view or a caster in its view has moved. Changes no picture; a frame then
+    /// costs what moved, not what there is, so whoever measures what maps cost sets false. Default true.
+    pub reuse: bool,
+    /// Busy work on the CPU before each map that is drawn, milliseconds: stands for an application's own culling and
+    /// skinning when threads are measured. 0 or more, default 0.
+    pub map_load_ms: f32,
     /// A WGSL function that moves vertices, in maps and pictures alike: `fn umbrage_deform(p_world: vec3f, p_object: vec3f,
     /// time_s: f32) -> vec3f`. Default none.
     pub deform: Option<Arc<str>>,
     /// How far it may move them, metres: boxes grow by it. Default 0.
     pub deform_reach_m: f32,
-    /// What it is told of time, seconds. Default 0.
+    /// What it is told of time until [`crate::Renderer::set_time`] says otherwise, seconds. Default 0.
     pub time_s: f32,
     /// Weights of the filter `kernel` as a WGSL function: `fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) ->
     /// vec4f`, of four texels whose centres lie so far from the receiver. Default none: a bell.
@@ -141,6 +147,8 @@ impl RenderOptions {
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
             all_casters: false,
+            reuse: true,
+            map_load_ms: 0.0,
             deform: None,
             deform_reach_m: 0.0,
             time_s: 0.0,

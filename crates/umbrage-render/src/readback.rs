@@ -8,7 +8,15 @@ use crate::gpu::Gpu;
 /// # Errors
 /// [`RenderError::Gpu`] when the device is lost or reported an error.
 pub fn wait(gpu: &Gpu) -> Result<(), RenderError> {
-    let waited = gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
+    wait_for(gpu, None)
+}
+
+/// Waits until the GPU has done one submission, whatever others are under way.
+///
+/// # Errors
+/// As [`wait`].
+pub fn wait_for(gpu: &Gpu, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), RenderError> {
+    let waited = gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
     gpu.check()?;
     waited.map(|_| ()).map_err(|e| RenderError::Gpu(e.to_string()))
 }

@@ -1,5 +1,6 @@
 //! The surfaces of a picture, read back from the G-buffer.
 
+use crate::threaded::locked;
 use crate::{RenderError, Renderer, readback};
 use glam::{DVec3, DVec4, Vec2, Vec3};
 use umbrage::core::DEPTH;
@@ -29,12 +30,14 @@ impl Renderer<'_> {
     /// [`RenderError::View`] when there is no such map, or when its format cannot be copied (24-bit depth);
     /// [`RenderError::Gpu`] when the device is lost.
     pub fn map_bytes(&self, view: usize) -> Result<Vec<u8>, RenderError> {
-        let shadows = self.shadows.as_ref().filter(|_| view < self.views().len());
-        let Some(shadows) = shadows else { return Err(RenderError::View(format!("there is no map {view}"))) };
-        if shadows.format.format == wgpu::TextureFormat::Depth24Plus {
+        let set = locked(&self.sets[0]);
+        let Some(maps) = set.maps().filter(|_| view < self.views().len()) else {
+            return Err(RenderError::View(format!("there is no map {view}")));
+        };
+        if maps.texture().format() == wgpu::TextureFormat::Depth24Plus {
             return Err(RenderError::View("24-bit depth cannot be copied; set storage=depth32f".into()));
         }
-        readback::layer(self.gpu, shadows.maps.texture(), view as u32)
+        readback::layer(self.gpu, maps.texture(), view as u32)
     }
 
     /// The surface in each pixel after a frame, rows from the top; `None` where nothing is. Surfaces that are mixed by alpha

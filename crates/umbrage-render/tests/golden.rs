@@ -432,7 +432,7 @@ fn what_coloured_light_costs_is_counted() {
         for (storage, bytes) in [("depth16", 2 + 4 + 2), ("r32f", 4 + 4 + 4)] {
             let settings = settings("colored", &[("map_size", "64"), ("storage", storage)]);
             let options = RenderOptions { size: glam::UVec2::splat(32), ..RenderOptions::new(settings) };
-            let renderer =
+            let mut renderer =
                 Renderer::new(&gpu, &scene, &scene.cameras[0].camera, options).expect("a renderer");
             // Both maps of distance are drawn with a depth of their own.
             let scratch = if storage == "r32f" { 2 * 4 * texels } else { 0 };

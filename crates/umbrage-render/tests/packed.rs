@@ -16,7 +16,7 @@ fn map(gpu: &Gpu, scene: &str, storage: &str) -> Vec<u8> {
         view: View::Visibility,
         ..RenderOptions::new(settings)
     };
-    let renderer = Renderer::new(gpu, &scene, &scene.cameras[0].camera, options).expect("a renderer");
+    let mut renderer = Renderer::new(gpu, &scene, &scene.cameras[0].camera, options).expect("a renderer");
     renderer.frame(Measure::Frame).expect("a frame");
     renderer.map_bytes(0).expect("a map")
 }

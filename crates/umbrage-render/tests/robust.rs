@@ -14,7 +14,7 @@ use umbrage_scene::{Material, Scene, SceneLight};
 fn visibility(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<f32>, RenderError> {
     let options =
         RenderOptions { size: UVec2::splat(48), view: View::Visibility, ..RenderOptions::new(settings) };
-    let renderer = Renderer::new(gpu, scene, &scene.cameras[0].camera, options)?;
+    let mut renderer = Renderer::new(gpu, scene, &scene.cameras[0].camera, options)?;
     renderer.frame(Measure::Frame)?;
     renderer.visibility()
 }
@@ -156,7 +156,7 @@ fn more_lights_than_a_picture_has_are_left_out_with_a_word() {
         size: UVec2::splat(16),
         ..RenderOptions::new(settings("linear", &[("map_size", "16")]))
     };
-    let renderer = Renderer::new(&gpu, &scene, &scene.cameras[0].camera, options).expect("16 lights");
+    let mut renderer = Renderer::new(&gpu, &scene, &scene.cameras[0].camera, options).expect("16 lights");
     renderer.frame(Measure::Frame).expect("a frame");
     assert!(
         renderer.warnings().iter().any(|w| w.contains("3 lights are left out")),

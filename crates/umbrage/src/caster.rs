@@ -55,7 +55,7 @@ pub fn unclipped(device: &wgpu::Device) -> bool {
 /// Mirrors `CasterView` of `wgsl/caster.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
 /// view, [`GpuCasterView::STRIDE`] bytes apart.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GpuCasterView {
     /// World to clip space.
     pub clip_from_world: Mat4,

@@ -105,6 +105,16 @@ impl ShadowMaps {
         self.texture.width()
     }
 
+    /// Memory of one layer, bytes: what each view of a light adds.
+    pub fn layer_bytes(&self) -> u64 {
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * u64::from(self.bytes_per_texel)
+    }
+
+    /// Layers.
+    pub fn layer_count(&self) -> usize {
+        self.layers.len()
+    }
+
     /// Memory of all layers, and of the depth that colour maps are drawn with, bytes: linear in the number of views, whatever
     /// the scene.
     pub fn memory_bytes(&self) -> u64 {
