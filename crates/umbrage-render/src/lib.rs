@@ -3,6 +3,7 @@
 //! A frame is [`Renderer::frame`]; everything before it is in [`Renderer::new`]. Surfaces go into a G-buffer of one
 //! texel a pixel and are lit once each, so a scene of many small triangles pays for its light by the pixel.
 
+mod density;
 mod draw_list;
 mod error;
 mod exposure;
@@ -23,6 +24,7 @@ mod targets;
 mod textures;
 mod timing;
 
+pub use density::{DensityStatistics, EDGE_ON_COS, OctaveShare, PERCENTILES, Spread};
 pub use draw_list::Work;
 pub use error::RenderError;
 pub use frame::{FrameReport, PassReport};
