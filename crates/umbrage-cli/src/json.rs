@@ -125,7 +125,7 @@ pub struct DensityJson {
 #[derive(Debug, Serialize)]
 pub struct SpreadJson {
     pub least: f64,
-    /// By the hundredths that are not above them.
+    /// `p01` is what one pixel in a hundred is not above.
     pub percentiles: Map<String, Value>,
     pub most: f64,
     /// Geometric.
@@ -165,7 +165,9 @@ impl From<&Spread> for SpreadJson {
         let percentiles = PERCENTILES.iter().zip(spread.percentiles);
         Self {
             least: spread.least,
-            percentiles: percentiles.map(|(percent, value)| (percent.to_string(), value.into())).collect(),
+            percentiles: percentiles
+                .map(|(percent, value)| (format!("p{percent:02}"), value.into()))
+                .collect(),
             most: spread.most,
             mean: spread.mean,
         }

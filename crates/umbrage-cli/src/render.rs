@@ -158,13 +158,15 @@ fn density_sentence(view: View, found: Option<&DensityStatistics>) -> String {
     };
     let [mean, hundredth, worst] =
         [found.mean.mean, found.mean.percentiles[0], found.worst_direction.percentiles[0]].map(text::rough);
-    let where_seen = match view {
-        View::DensityLight => format!("; the eye sees {} % of the map", text::rough(100.0 * found.share)),
-        _ => String::new(),
+    let (counted, seen) = match view {
+        View::DensityLight => {
+            ("texels", format!("; the eye sees {} % of the map", text::rough(100.0 * found.share)))
+        }
+        _ => ("pixels", String::new()),
     };
     format!(
-        "texels per pixel: {mean} in the mean, 1 % of the pixels below {hundredth}, along their worst direction below \
-         {worst}{where_seen}\n"
+        "texels per pixel: {mean} in the mean, 1 % of the {counted} below {hundredth}, along the worst direction below \
+         {worst}{seen}\n"
     )
 }
 

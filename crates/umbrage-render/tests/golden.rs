@@ -388,7 +388,7 @@ fn density(name: &str, scene: &Scene, view: View, side: u32) {
 
 #[test]
 fn density_from_the_eye() {
-    density("density", &standing(), View::Density, 112);
+    density("density", &standing(), View::Density, 104);
 }
 
 #[test]

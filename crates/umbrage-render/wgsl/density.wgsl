@@ -8,8 +8,9 @@ fn no_receiver(grey: f32) -> vec4f {
     return vec4f(0.0, 0.0, 0.0, -clamp(grey, LEAST_GREY, 1.0));
 }
 
-// A receiver faces the light by more than EDGE_ON_COS and lies in its reach and in its map, in shadow or not.
-fn density_of(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, grey: f32) -> vec4f {
+// A receiver faces the light by more than EDGE_ON_COS and lies in its reach and in its map, in shadow or not. Its grey, and
+// that of a surface that is none, are given.
+fn density_of(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, grey: f32, other_grey: f32) -> vec4f {
     let towards = incoming(light, p_world).towards;
     let in_cone = light.kind != SPOT || dot(-towards, light.direction) >= light.cos_outer;
     let distance_m = length(light.position - p_world);
@@ -17,7 +18,7 @@ fn density_of(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, grey:
     let faces = dot(s.normal, towards) > EDGE_ON_COS && dot(s.shading_normal, towards) > 0.0;
     let inside = umbrage_locate(view, p_world, s.normal).inside;
     if !(in_cone && in_range && faces && inside) || (s.flags & UNLIT) != 0u {
-        return no_receiver(grey);
+        return no_receiver(other_grey);
     }
     let picture_px = vec2f(textureDimensions(depth));
     let map_texel = vec2f(1.0 / view.texel_uv);
@@ -26,14 +27,15 @@ fn density_of(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, grey:
     return vec4f(found.mean, found.least, found.most, clamp(grey, LEAST_GREY, 1.0));
 }
 
-// From the eye. The grey is the lit picture's.
+// From the eye. A receiver's grey is the lit picture's, so that shadows are seen; that of others as if the eye held a lamp.
 @fragment
 fn fs_density(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
     at_pixel = vec2u(position.xy);
     let light = lights[frame.shown_light];
     let lit = dot(max(shade(here.surface, here.p_world), vec3f(0.0)), vec3f(0.21, 0.72, 0.07));
-    return density_of(light, shown_view(light, here.p_world), here.surface, here.p_world, sqrt(lit));
+    let lamp = 0.8 * saturate(dot(here.surface.shading_normal, towards_eye(here.p_world)));
+    return density_of(light, shown_view(light, here.p_world), here.surface, here.p_world, sqrt(lit), lamp);
 }
 
 // The place in the world that a map shows at `uv` and depth: where three planes meet.
@@ -98,10 +100,11 @@ fn fs_density_light(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let off_depth = umbrage_locate(here.view, p_world, vec3f(0.0, 1.0, 0.0)).noise;
     let off_m = length(place_in_world(here.view, uv, stored + off_depth) - p_world);
     let at_eye = seen_by_eye(p_world, off_m);
+    let other_grey = 0.9 - 0.7 * share_of_depth(here.view, stored);
     if !at_eye.seen {
-        return no_receiver(0.9 - 0.7 * share_of_depth(here.view, stored));
+        return no_receiver(other_grey);
     }
     let light = lights[frame.shown_light];
     let facing = dot(at_eye.surface.shading_normal, incoming(light, p_world).towards);
-    return density_of(light, here.view, at_eye.surface, p_world, 0.3 + 0.7 * saturate(facing));
+    return density_of(light, here.view, at_eye.surface, p_world, 0.3 + 0.7 * saturate(facing), other_grey);
 }
