@@ -190,6 +190,8 @@ const RENDER_EXAMPLES: &str = "Examples:
       what a coarse map without filter looks like
   umbrage render builtin:columns --view depth -o map.png
       the light's map itself: near black, far white
+  umbrage render builtin:columns --view density --set projection=lispsm -o density.png
+      texels of the map in each pixel, with a legend and a histogram; --json has the numbers
   umbrage render model.obj --light kind=directional,direction=-1:-2:-1,lux=3 --size 1920x1080 --msaa 4
       under a sun of your own
   umbrage render --frames 20 --statistics --json

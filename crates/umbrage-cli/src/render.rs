@@ -2,13 +2,15 @@
 
 use crate::args::RenderArgs;
 use crate::fault::{Fault, say, tell};
-use crate::json::{self, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
+use crate::json::{self, DensityJson, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
 use crate::setup::{self, Stage};
 use crate::text;
 use std::path::Path;
 use std::time::Instant;
 use umbrage_render::picture::write_png;
-use umbrage_render::{FrameReport, Gpu, Measure, PassReport, RenderOptions, Renderer, View};
+use umbrage_render::{
+    DensityStatistics, FrameReport, Gpu, Measure, PassReport, RenderOptions, Renderer, View,
+};
 
 /// Draws it, writes it, says what it is.
 ///
@@ -63,6 +65,8 @@ struct Drawn {
     /// In all frames together.
     maps_drawn: u64,
     maps_reused: u64,
+    /// Texels per pixel, in the views that show them; `None` inside where no receiver is seen.
+    density: Option<Option<DensityStatistics>>,
 }
 
 /// The frames; the first is dropped when there are several, because drivers compile then. Passes are measured in a frame
@@ -95,7 +99,9 @@ fn draw(renderer: &mut Renderer<'_>, count: u32, statistics: bool) -> Result<Dra
             pass.statistics = same.and_then(|other| other.statistics);
         }
     }
-    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused })
+    let shows_density = renderer.options().view.is_density();
+    let density = if shows_density { Some(renderer.density_statistics()?) } else { None };
+    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused, density })
 }
 
 /// Can the picture be written there? Asked before any work.
@@ -156,11 +162,31 @@ fn report(
         maps_drawn: drawn.maps_drawn,
         maps_reused: drawn.maps_reused,
         exposure: json::decimal(renderer.exposure()),
+        density: drawn.density.as_ref().map(|found| DensityJson::of(options.view, found.as_ref())),
         timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
         output: args.output.display().to_string(),
         notes: stage.notes.clone(),
         warnings,
     }
+}
+
+/// Texels per pixel for people; the numbers are in `--json`.
+fn density_sentence(view: View, found: Option<&DensityStatistics>) -> String {
+    let Some(found) = found else {
+        return "texels per pixel: no surface that the light could reach is in sight\n".to_owned();
+    };
+    let [mean, hundredth, worst] =
+        [found.mean.mean, found.mean.percentiles[0], found.worst_direction.percentiles[0]].map(text::rough);
+    let (counted, seen) = match view {
+        View::DensityLight => {
+            ("texels", format!("; the eye sees {} % of the map", text::rough(100.0 * found.share)))
+        }
+        _ => ("pixels", String::new()),
+    };
+    format!(
+        "texels per pixel: {mean} in the mean, 1 % of the {counted} below {hundredth}, along the worst direction below \
+         {worst}{seen}\n"
+    )
 }
 
 fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
@@ -182,8 +208,10 @@ fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>,
         0 | 1 => format!("first frame {:.0} ms", json::median(&drawn.frames_ms)),
         many => format!("{:.1} ms, the median of {many} frames", json::median(&drawn.frames_ms)),
     };
+    let density =
+        drawn.density.as_ref().map_or(String::new(), |found| density_sentence(options.view, found.as_ref()));
     format!(
-        "{}: {} triangles, {}{maps}, on {}: {time}\n{} view of {}x{} pixels written to {}\n",
+        "{}: {} triangles, {}{maps}, on {}: {time}\n{density}{} view of {}x{} pixels written to {}\n",
         stage.scene.name,
         text::count(stage.scene.triangles()),
         options.settings.technique.id,

@@ -164,6 +164,9 @@ impl Renderer<'_> {
     /// # Errors
     /// [`RenderError::Gpu`] when the device is lost.
     pub fn picture(&self) -> Result<Vec<u8>, RenderError> {
+        if self.options.view.is_density() {
+            return self.density_picture();
+        }
         if self.options.view != View::Visibility {
             return readback::texture(self.gpu, &self.targets.output);
         }
@@ -214,6 +217,7 @@ impl Renderer<'_> {
             View::Final | View::Light => {
                 wgpu::Color { r: background.x, g: background.y, b: background.z, a: 1.0 }
             }
+            view if view.is_density() => wgpu::Color::TRANSPARENT,
             _ => wgpu::Color::WHITE,
         }
     }

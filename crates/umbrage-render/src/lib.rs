@@ -7,6 +7,7 @@
 
 mod bindings;
 mod deform;
+mod density;
 mod draw_list;
 mod error;
 mod exposure;
@@ -33,6 +34,7 @@ mod threaded;
 mod timing;
 
 pub use deform::deformed;
+pub use density::{DensityStatistics, EDGE_ON_COS, OctaveShare, PERCENTILES, Spread};
 pub use draw_list::Work;
 pub use error::RenderError;
 pub use frame::{FrameReport, PassReport};

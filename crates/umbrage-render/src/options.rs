@@ -21,11 +21,15 @@ pub enum View {
     Projected,
     /// The channels of a map that is a colour target.
     Channels,
+    /// Texels of the light's map in a pixel, over the dimmed scene, with a legend and a histogram.
+    Density,
+    /// The same numbers in each texel of the map.
+    DensityLight,
 }
 
 impl View {
     /// All views.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Final,
         Self::Visibility,
         Self::Light,
@@ -33,6 +37,8 @@ impl View {
         Self::Distance,
         Self::Projected,
         Self::Channels,
+        Self::Density,
+        Self::DensityLight,
     ];
 
     /// Name on the command line.
@@ -45,6 +51,8 @@ impl View {
             Self::Distance => "distance",
             Self::Projected => "projected",
             Self::Channels => "channels",
+            Self::Density => "density",
+            Self::DensityLight => "density-light",
         }
     }
 
@@ -58,12 +66,21 @@ impl View {
             Self::Distance => "each surface's distance from the light: near black, far white",
             Self::Projected => "the light's map projected on the scene",
             Self::Channels => "the channels of a map that is a colour target (storage r32f or packed)",
+            Self::Density => "shadow-map texels per pixel: blue too few, red to spare; with a histogram",
+            Self::DensityLight => {
+                "the same from the light's eye, in its map; grey where the eye does not look"
+            }
         }
     }
 
     /// Does it show what the map holds?
     pub fn shows_map(self) -> bool {
-        matches!(self, Self::Depth | Self::Projected | Self::Channels)
+        matches!(self, Self::Depth | Self::Projected | Self::Channels | Self::DensityLight)
+    }
+
+    /// Does it hold texels per pixel?
+    pub fn is_density(self) -> bool {
+        matches!(self, Self::Density | Self::DensityLight)
     }
 
     /// Does it need the map itself, and so a light that has one?

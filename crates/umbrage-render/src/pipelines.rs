@@ -17,6 +17,8 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Views that are numbers, not colour.
 pub const GREY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Texels per pixel, unrounded: see `wgsl/density.wgsl`.
+pub const DENSITY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// V, unrounded.
 pub const VISIBILITY: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// V where it is a colour, unrounded.
@@ -28,6 +30,7 @@ pub fn format_of(view: View, colors_light: bool) -> wgpu::TextureFormat {
         View::Final | View::Light => COLOR,
         View::Visibility if colors_light => VISIBILITY_RGB,
         View::Visibility => VISIBILITY,
+        View::Density | View::DensityLight => DENSITY,
         View::Depth | View::Distance | View::Projected | View::Channels => GREY,
     }
 }
@@ -267,6 +270,8 @@ pub fn screen_pipeline(
         View::Distance => "fs_distance",
         View::Projected => "fs_projected",
         View::Channels => "fs_channels",
+        View::Density => "fs_density",
+        View::DensityLight => "fs_density_light",
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -284,7 +289,7 @@ pub fn screen_pipeline(
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(false),
             depth_compare: Some(match view {
-                View::Depth | View::Channels => wgpu::CompareFunction::Always,
+                View::Depth | View::Channels | View::DensityLight => wgpu::CompareFunction::Always,
                 _ => wgpu::CompareFunction::NotEqual,
             }),
             stencil: Default::default(),

@@ -80,6 +80,7 @@ impl<'a> Renderer<'a> {
         camera: &Camera,
         options: RenderOptions,
     ) -> Result<Self, RenderError> {
+        let options = crate::density::options(options);
         camera.check().map_err(RenderError::Camera)?;
         check_samples(gpu, options.samples)?;
         let emits = scene.meshes.iter().any(|mesh| scene.materials[mesh.material].emissive != Vec3::ZERO);
@@ -319,6 +320,7 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
         lights: lights.lights.len(),
         point: scene.lights.iter().any(|l| l.light.kind == LightKind::Point),
         places: lights.lights.iter().any(|l| l.places > 1),
+        density: options.view.is_density(),
         deform: options.deform.clone(),
         kernel: options.kernel.clone(),
     }

@@ -1,5 +1,6 @@
 //! The renderer's shaders: library modules, the chosen filter, and the passes, joined as text.
 
+use crate::density::EDGE_ON_COS;
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
@@ -13,6 +14,7 @@ const SHADE: &str = include_str!("../wgsl/shade.wgsl");
 const MESH: &str = include_str!("../wgsl/mesh.wgsl");
 const SCREEN: &str = include_str!("../wgsl/screen.wgsl");
 const CHANNELS: &str = include_str!("../wgsl/channels.wgsl");
+const DENSITY: &str = include_str!("../wgsl/density.wgsl");
 
 /// What a scene's shaders must be able to do. What is not needed is not in their text: software rasterisers, and
 /// many GPUs, pay for both sides of a branch.
@@ -36,6 +38,8 @@ pub struct ShaderNeeds {
     pub point: bool,
     /// Is any light seen from several places?
     pub places: bool,
+    /// Are texels per pixel shown?
+    pub density: bool,
     /// Moves vertices: see [`umbrage::caster::NO_DEFORM`].
     pub deform: Option<Arc<str>>,
     /// Weights of the filter `kernel`, in place of its own.
@@ -144,6 +148,9 @@ fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
     // The debug views locate points and read maps whatever the technique is.
     modules.extend(["view", "light", "cookie", "locate", "face", "map"]);
+    if needs.density {
+        modules.push("density");
+    }
     let own_kernel = needs.kernel.as_deref().filter(|_| modules.contains(&"filter/kernel"));
     let library = match own_kernel {
         Some(kernel) => assemble_with(&modules, &[("kernel", kernel)]),
@@ -179,7 +186,12 @@ pub fn mesh(needs: &ShaderNeeds) -> String {
 /// The shader that covers the screen.
 pub fn screen(needs: &ShaderNeeds) -> String {
     let is_color = needs.combination.is_some_and(|c| c.storage.is_color());
-    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }].join("\n")
+    let density = if needs.density {
+        format!("const EDGE_ON_COS = {EDGE_ON_COS:?};\n{DENSITY}")
+    } else {
+        String::new()
+    };
+    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }, &density].join("\n")
 }
 
 /// Every shader that the renderer can make, with a name: for validation. Combinations and kinds of scenes do not touch each other,
@@ -196,6 +208,7 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
         lights,
         point: lights > 1,
         places: lights > WRITTEN_OUT,
+        density: combination.is_some() && lights > 0,
         deform: None,
         kernel: None,
     };

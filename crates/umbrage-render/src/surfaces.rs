@@ -12,6 +12,8 @@ pub struct DrawnSurface {
     pub p_world: DVec3,
     /// As it is shaded: interpolated, bent by the normal map. Unit length.
     pub shading_normal_world: Vec3,
+    /// The triangle's own, on the viewer's side. Unit length.
+    pub normal_world: Vec3,
 }
 
 /// The inverse of `pack_normal` in `wgsl/surface.wgsl`.
@@ -67,6 +69,7 @@ impl Renderer<'_> {
             (depth != DEPTH.clear()).then(|| DrawnSurface {
                 p_world: p.truncate() / p.w,
                 shading_normal_world: unpack_normal(word(packed)),
+                normal_world: unpack_normal(word(&packed[12..])),
             })
         };
         Ok(packed.chunks_exact(16).zip(depth.chunks_exact(4)).enumerate().map(surface).collect())

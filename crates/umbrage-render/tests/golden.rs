@@ -603,6 +603,30 @@ fn no_scale_changes_visibility() {
     }
 }
 
+/// Colours, legend and histogram of a view; half the map, which has half the texels, must not pass for it.
+fn density(name: &str, scene: &Scene, view: View, side: u32) {
+    let Some(gpu) = gpu() else { return };
+    let shot = |size| shoot(&gpu, scene, settings("linear", &[("map_size", size)]), view, side);
+    check_differs(name, &shot("256"), "half the map");
+    check(name, &shot("512"));
+}
+
+#[test]
+fn density_from_the_eye() {
+    density("density", &standing(), View::Density, 104);
+}
+
+#[test]
+fn density_from_the_light() {
+    density("density-light", &standing(), View::DensityLight, 144);
+}
+
+/// A picture that is large enough for the legend, of planes that are less and less of a receiver.
+#[test]
+fn density_s_legend() {
+    density("density-legend", &builtin("tilt"), View::Density, 176);
+}
+
 /// A row of a table without a golden of its own is a choice that nobody looked at.
 #[test]
 fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {
