@@ -96,8 +96,8 @@ pub(crate) struct MapSet {
 }
 
 impl MapSet {
-    /// Without any map.
-    pub fn new(device: &wgpu::Device) -> Self {
+    /// Without any map, for so many views at most.
+    pub fn new(device: &wgpu::Device, views: usize) -> Self {
         use wgpu::BufferUsages as Usage;
         Self {
             maps: None,
@@ -105,7 +105,12 @@ impl MapSet {
             instances: Growing::new(device, "caster instances", Usage::VERTEX, 0),
             matrices: Growing::new(device, "caster views", Usage::UNIFORM, 0),
             view_group: None,
-            views: Growing::new(device, "views", Usage::STORAGE, size_of::<GpuView>()),
+            views: Growing::new(
+                device,
+                "views",
+                Usage::STORAGE | Usage::UNIFORM,
+                size_of::<GpuView>() * views.max(1),
+            ),
             lights: Lights::default(),
             casters: Vec::new(),
             wanted: Vec::new(),

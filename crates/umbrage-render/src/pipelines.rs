@@ -3,7 +3,7 @@
 use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
 use crate::materials::Variant;
 use crate::options::View;
-use crate::shaders::{self, ShaderNeeds};
+use crate::shaders::{self, MOST_UNIFORM_VIEWS, ShaderNeeds};
 use std::collections::HashMap;
 use std::num::NonZeroU64;
 use umbrage::CasterStreams;
@@ -64,8 +64,8 @@ fn texture(
 }
 
 impl Layouts {
-    /// Makes the layouts, for maps that are colour targets or depth textures.
-    pub fn new(device: &wgpu::Device, color_maps: bool) -> Self {
+    /// Makes the layouts, for maps that are colour targets or depth textures, and so many views.
+    pub fn new(device: &wgpu::Device, color_maps: bool, views: usize) -> Self {
         let group = |label, visibility, types: &[wgpu::BindingType]| {
             let entries: Vec<_> = (0u32..)
                 .zip(types)
@@ -91,10 +91,14 @@ impl Layouts {
                 &[
                     uniform(size_of::<GpuFrame>()),
                     uniform(size_of::<GpuLight>() * MAX_LIGHTS),
-                    wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Storage { read_only: true },
-                        has_dynamic_offset: false,
-                        min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
+                    if views <= MOST_UNIFORM_VIEWS {
+                        uniform(size_of::<GpuView>() * views.max(1))
+                    } else {
+                        wgpu::BindingType::Buffer {
+                            ty: wgpu::BufferBindingType::Storage { read_only: true },
+                            has_dynamic_offset: false,
+                            min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
+                        }
                     },
                     maps,
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),

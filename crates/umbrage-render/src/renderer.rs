@@ -26,7 +26,7 @@ use umbrage::caster::NO_DEFORM;
 use umbrage::core::fit::ShadowView;
 use umbrage::core::plan::{Draws, plan};
 use umbrage::core::technique::Storage;
-use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
+use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind, LightShape};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentPipelines, choose_format};
 use umbrage_scene::{Image, Instance, Reflectance, Scene, SceneLight};
 
@@ -44,6 +44,8 @@ pub struct Renderer<'a> {
     pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
     pub(crate) schedule: MapSchedule,
     pub(crate) thread: Option<MapThread>,
+    /// How many views there may be.
+    pub(crate) most_views: usize,
     /// When the frame last drew maps.
     pub(crate) drawn_at: Option<Instant>,
     pub(crate) targets: Targets,
@@ -93,8 +95,9 @@ impl<'a> Renderer<'a> {
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
         let format = choose_format(storage, |format| gpu.usages_of(format))?;
-        let layouts =
-            Layouts::new(&gpu.device, options.settings.combination.is_some() && format.storage.is_color());
+        let most_views = most_views(scene, &options);
+        let color_maps = options.settings.combination.is_some() && format.storage.is_color();
+        let layouts = Layouts::new(&gpu.device, color_maps, most_views);
         let geometry = Arc::new(Geometry::new(&gpu.device, scene));
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
@@ -122,7 +125,7 @@ impl<'a> Renderer<'a> {
             exposure,
             (Arc::clone(&geometry), Arc::new(materials), scene),
         )?;
-        let mut set = MapSet::new(&gpu.device);
+        let mut set = MapSet::new(&gpu.device, most_views);
         maker.refresh(&mut set, &world)?;
 
         let needs = shader_needs(scene, &options, &set.lights);
@@ -148,6 +151,7 @@ impl<'a> Renderer<'a> {
             sets: vec![Arc::new(Mutex::new(set))],
             schedule: MapSchedule::default(),
             thread: None,
+            most_views,
             drawn_at: None,
             targets,
             mesh_pipelines,
@@ -306,6 +310,16 @@ fn make_casting(
     Ok(Some(Casting { peeled: peel_pass.map(peel).transpose()?, pass, pipelines, translucent }))
 }
 
+/// How many views the lights of a scene may have.
+fn most_views(scene: &Scene, options: &RenderOptions) -> usize {
+    let places = if options.settings.combination.is_some() { options.settings.places() as usize } else { 0 };
+    let of_light = |light: &Light| {
+        let places = if light.shape == LightShape::Point { places.min(1) } else { places };
+        places * if light.kind == LightKind::Point { 6 } else { 1 }
+    };
+    scene.lights.iter().take(MAX_LIGHTS).map(|placed| of_light(&placed.light)).sum()
+}
+
 /// What the shaders of a scene must be able to do, and no more.
 fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> ShaderNeeds {
     let used = || scene.meshes.iter().map(|mesh| &scene.materials[mesh.material].reflectance);
@@ -319,6 +333,7 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
         slide: !lights.slides.is_empty(),
         lights: lights.lights.len(),
         point: scene.lights.iter().any(|l| l.light.kind == LightKind::Point),
+        views: most_views(scene, options),
         places: lights.lights.iter().any(|l| l.places > 1),
         density: options.view.is_density(),
         deform: options.deform.clone(),

@@ -36,6 +36,8 @@ pub struct ShaderNeeds {
     pub lights: usize,
     /// Is any light a point light?
     pub point: bool,
+    /// How many views there may be; see [`MOST_UNIFORM_VIEWS`].
+    pub views: usize,
     /// Is any light seen from several places?
     pub places: bool,
     /// Are texels per pixel shown?
@@ -143,6 +145,18 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
     )
 }
 
+/// Up to how many views stand in a uniform, where every GPU reads them fastest; more stand in a storage buffer.
+pub const MOST_UNIFORM_VIEWS: usize = 256;
+
+/// The binding of the views.
+fn views(count: usize) -> String {
+    if count <= MOST_UNIFORM_VIEWS {
+        format!("@group(0) @binding(2) var<uniform> views: array<UmbrageView, {}>;", count.max(1))
+    } else {
+        "@group(0) @binding(2) var<storage, read> views: array<UmbrageView>;".to_owned()
+    }
+}
+
 /// What all shaders begin with: the library, the frame, and the technique's visibility.
 fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
@@ -175,7 +189,8 @@ fn prelude(needs: &ShaderNeeds) -> String {
         "const MAX_LIGHTS = {MAX_LIGHTS}u;\nconst DEPTH_CLEAR = {:?};\n{flags}{shared}",
         DEPTH.clear()
     );
-    [&library, &constants, FRAME, SURFACE, &visibility, SHADE, &lit_by_all(needs.lights)].join("\n")
+    let frame = FRAME.replace("// VIEWS_HERE", &views(needs.views));
+    [&library, &constants, &frame, SURFACE, &visibility, SHADE, &lit_by_all(needs.lights)].join("\n")
 }
 
 /// The shader that draws the scene's meshes.
@@ -207,6 +222,7 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
         slide: lights > 1,
         lights,
         point: lights > 1,
+        views: if lights > WRITTEN_OUT { MOST_UNIFORM_VIEWS + 1 } else { lights },
         places: lights > WRITTEN_OUT,
         density: combination.is_some() && lights > 0,
         deform: None,

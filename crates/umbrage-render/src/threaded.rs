@@ -213,7 +213,7 @@ impl Renderer<'_> {
         if let MapSchedule::Threaded(interval) = schedule {
             let front = Arc::clone(&self.sets[0]);
             draw_all(&self.maker, &mut locked(&front), &self.world, !self.options.reuse)?;
-            let back = Arc::new(Mutex::new(MapSet::new(&self.gpu.device)));
+            let back = Arc::new(Mutex::new(MapSet::new(&self.gpu.device, self.most_views)));
             self.maker.refresh(&mut locked(&back), &self.world)?;
             self.gpu.check()?;
             self.sets.push(Arc::clone(&back));

@@ -46,7 +46,7 @@ struct Light {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lights: array<Light, MAX_LIGHTS>;
-@group(0) @binding(2) var<storage, read> views: array<UmbrageView>;
+// VIEWS_HERE
 @group(0) @binding(3) var maps: UmbrageMap;
 @group(0) @binding(4) var map_compare: sampler_comparison;
 @group(0) @binding(5) var slides: texture_2d_array<f32>;
