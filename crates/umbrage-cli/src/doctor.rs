@@ -115,7 +115,9 @@ fn format_of_adapter(gpu: &Gpu, storage: Storage) -> Format {
     let about = match storage {
         Storage::Depth24 => "WebGPU's depth24plus: 24 bits, or 32-bit float underneath, as the adapter likes",
         Storage::Depth16 => "16-bit normalised",
-        _ => "32-bit float",
+        Storage::R32Float => "distance in a 32-bit float colour target",
+        Storage::Packed1 | Storage::Packed2 | Storage::Packed3 => "distance in channels of 8 bits",
+        Storage::Auto | Storage::Depth32Float => "32-bit float",
     };
     Format { storage: storage.row().id, usable: lacks.is_none(), lacks, about }
 }
@@ -191,7 +193,7 @@ fn describe(report: &Report) -> String {
     );
     let samples: Vec<String> = report.samples.iter().map(u32::to_string).collect();
     out += &line("MSAA", &format!("{} samples a pixel", samples.join(" or ")));
-    out += "\nDepth formats of shadow maps\n";
+    out += "\nFormats of shadow maps, best first\n";
     for format in &report.formats {
         let verdict = format.lacks.map_or_else(|| "usable".to_owned(), |lacks| format!("lacks {lacks}"));
         out += &line(&format!("  {}", format.storage), &format!("{verdict} ({})", format.about));

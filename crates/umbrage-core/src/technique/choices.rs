@@ -269,7 +269,7 @@ choices! {
         Linear = Choice {
             id: "linear",
             label: "Linear (2x2)",
-            summary: "four comparisons around the receiver, blended by the hardware",
+            summary: "four comparisons around the receiver, blended; by the hardware where all four have one depth",
             source: Some(Source {
                 paper: "Reeves, Salesin and Cook, Rendering Antialiased Shadows with Depth Maps",
                 year: 1987,

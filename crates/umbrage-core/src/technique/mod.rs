@@ -134,7 +134,7 @@ pub const TECHNIQUES: &[Technique] = &[
     Technique {
         id: "linear",
         label: "Linear shadow map",
-        summary: "2x2 comparisons blended by the hardware: the stairs of `hard` become a texel-wide ramp",
+        summary: "2x2 comparisons, blended: the stairs of `hard` become a ramp a texel wide",
         family: Family::Map,
         source: Some(REEVES),
         combination: Some(LINEAR),
