@@ -38,7 +38,11 @@ whose surface faces the light and lies in its cone. All shares are of receivers.
 | cost | median of frame with shadow minus frame without, neighbours in time |
 
 Each light is measured alone. Pixels in which rays and rasteriser saw different surfaces are left out and counted. Where the
-shading's normal faces away from the light no light arrives whatever V is, so these pixels are no receivers either.
+shading's normal faces away from the light no light arrives whatever V is, so these pixels are no receivers either. A change of
+V* may lie within reach and still between no two pixels: behind what stands in front, or narrower than a pixel. Before a pixel is
+called acne or a leak, rays look at the light's own view around it, as far as the technique reaches; with a silhouette there, or
+for a dark pixel light on its own plane, it counts to the edge band (`hidden_pixels` in `--json`). A crease between two lit surfaces
+is none: there the error stands.
 ";
 
 /// A measure of a row, as a cell.
