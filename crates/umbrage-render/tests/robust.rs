@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{builtin, over_floor, sheet, with_light};
 use common::{gpu, settings};
 use glam::{Mat4, UVec2, Vec3};
-use umbrage_render::umbrage::core::technique::{Settings, TECHNIQUES};
+use umbrage_render::umbrage::core::technique::{Combination, Settings, TECHNIQUES};
 use umbrage_render::umbrage::core::{Camera, Light, LightKind, LightShape};
 use umbrage_render::{Gpu, MAX_LIGHTS, Measure, RenderError, RenderOptions, Renderer, View};
 use umbrage_scene::{Material, Scene, SceneLight};
@@ -177,4 +177,34 @@ fn more_maps_than_the_adapter_holds_are_refused_with_the_way_out() {
     assert!(matches!(error, RenderError::Shadow(_)), "{error}");
     let message = error.to_string();
     assert!(message.contains("6144 layers") && message.contains("views"), "{message}");
+}
+
+/// Every combination that is said to go together draws a shadow, and every other says why not.
+#[test]
+fn every_valid_combination_draws_a_shadow() {
+    let Some(gpu) = gpu() else { return };
+    let block = builtin("contact").meshes.into_iter().find(|m| m.name == "low box").expect("a box");
+    let block = umbrage_scene::Mesh { material: 0, ..block };
+    let lifted = Mat4::from_translation(Vec3::new(0.6, 0.8, 0.0));
+    let scene = over_floor(vec![Material::default()], vec![], vec![block], &[(0, lifted)]);
+    let plain = visibility(&gpu, &scene, settings("unshadowed", &[])).expect("unshadowed");
+    let (mut drawn, mut refused) = (0, 0);
+    for combination in Combination::all() {
+        let ids = combination.rows().map(|row| row.id);
+        let pairs: Vec<(&str, &str)> =
+            Settings::CHOICES.into_iter().zip(ids).chain([("map_size", "256")]).collect();
+        let made = Settings::new("linear", pairs.iter().copied());
+        if combination.objection().is_some() {
+            assert!(made.is_err_and(|e| e.to_string().contains("do not go together")), "{ids:?}");
+            refused += 1;
+            continue;
+        }
+        let v = visibility(&gpu, &scene, made.expect("valid")).unwrap_or_else(|e| panic!("{ids:?}: {e}"));
+        let dark = v.iter().zip(&plain).filter(|(v, plain)| **v < 0.5 && **plain == 1.0).count();
+        assert!(v.iter().all(|v| (0.0..=1.0).contains(v)), "{ids:?}: V is no visibility");
+        assert!(dark > 12, "{ids:?}: only {dark} pixels are in shadow");
+        drawn += 1;
+    }
+    println!("{drawn} combinations drawn, {refused} refused");
+    assert!(drawn > 1000 && refused > 100);
 }
