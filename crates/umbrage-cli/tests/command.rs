@@ -198,10 +198,30 @@ fn what_the_adapter_cannot_do_fails_and_leaves_nothing() {
     for (args, words) in [
         (&["--view", "depth", "--technique", "unshadowed"][..], &["needs a shadow map"][..]),
         (&["--view", "visibility", "--light-index", "7"], &["light 7"]),
+        (&["--view", "channels"], &["the map is depth32f", "storage=r32f"]),
     ] {
         refused(&umbrage(&folder.0, &small(args)), 2, words);
     }
     assert_eq!(folder.names(), [""; 0]);
+}
+
+/// An adapter without depth textures to sample: `auto` keeps distance in colour, and what cannot be had with that is said.
+#[test]
+fn without_depth_formats_distance_is_kept_in_colour() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new("colour");
+    let without = |args: &[&'static str]| {
+        command(&folder.0, &small(args))
+            .env("UMBRAGE_WITHOUT", "depth16,depth24,depth32f,r32f")
+            .output()
+            .expect("starts")
+    };
+    let drawn = without(&["--json"]);
+    let said = String::from_utf8_lossy(&drawn.stdout).into_owned();
+    assert!(drawn.status.success() && said.contains("packed3"), "{said}");
+    refused(&without(&["--technique", "perspective"]), 2, &["packed3", "warped map"]);
 }
 
 #[test]

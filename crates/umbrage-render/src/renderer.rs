@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 use umbrage::caster::NO_DEFORM;
 use umbrage::core::fit::ShadowView;
 use umbrage::core::plan::{Draws, plan};
-use umbrage::core::technique::Storage;
+use umbrage::core::technique::{Combination, Storage};
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind, LightShape};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentPipelines, choose_format};
 use umbrage_scene::{Image, Instance, Reflectance, Scene, SceneLight};
@@ -95,6 +95,19 @@ impl<'a> Renderer<'a> {
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
         let format = choose_format(storage, |format| gpu.usages_of(format))?;
+        let settled = options.settings.combination.map(|c| Combination { storage: format.storage, ..c });
+        if let Some(reason) = settled.and_then(|combination| combination.objection()) {
+            return Err(RenderError::View(format!(
+                "this adapter's best storage for maps is {}, and that does not go with the rest: {reason}",
+                format.storage.row().id
+            )));
+        }
+        if options.view == View::Channels && !format.storage.is_color() {
+            return Err(RenderError::View(format!(
+                "the view `channels` shows a colour target, and the map is {}; set storage=r32f or storage=packed3",
+                format.storage.row().id
+            )));
+        }
         let most_views = most_views(scene, &options);
         let color_maps = options.settings.combination.is_some() && format.storage.is_color();
         let layouts = Layouts::new(&gpu.device, color_maps, most_views);
@@ -128,7 +141,7 @@ impl<'a> Renderer<'a> {
         let mut set = MapSet::new(&gpu.device, most_views);
         maker.refresh(&mut set, &world)?;
 
-        let needs = shader_needs(scene, &options, &set.lights);
+        let needs = shader_needs(scene, &options, maker.format.storage, &set.lights);
         let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
         let screen = (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view));
         let slide_images: Vec<&Image> = set.lights.slides.iter().map(|i| &scene.images[*i]).collect();
@@ -321,11 +334,12 @@ fn most_views(scene: &Scene, options: &RenderOptions) -> usize {
 }
 
 /// What the shaders of a scene must be able to do, and no more.
-fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> ShaderNeeds {
+fn shader_needs(scene: &Scene, options: &RenderOptions, storage: Storage, lights: &Lights) -> ShaderNeeds {
     let used = || scene.meshes.iter().map(|mesh| &scene.materials[mesh.material].reflectance);
     let is_blinn = |r: &Reflectance| options.all_blinn || matches!(r, Reflectance::Blinn { .. });
     ShaderNeeds {
-        combination: options.settings.combination,
+        // `auto` is read as what it was settled on.
+        combination: options.settings.combination.map(|c| Combination { storage, ..c }),
         given: options.given.is_some(),
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
