@@ -78,6 +78,8 @@ pub struct Row {
     pub errors: Errors,
     /// From a contact to where its shadow begins, metres.
     pub gap_m: Option<f64>,
+    /// The same in widths of a texel there, across the light; nothing without a map.
+    pub gap_texel: Option<f64>,
     /// Width of soft edges over that of similar triangles.
     pub penumbra: Option<f64>,
     /// Change of V between frames where the truth does not change.
@@ -121,6 +123,7 @@ pub struct Comparison {
 struct Running {
     errors: Vec<Errors>,
     gaps_m: Vec<f64>,
+    gaps_texel: Vec<f64>,
     penumbrae: Vec<f64>,
     flickers: Vec<f64>,
     last_v: Vec<Vec3>,
@@ -216,6 +219,7 @@ fn measure_group(
             let so_far = &mut running[i];
             so_far.errors.push(errors);
             so_far.gaps_m.extend(shape.gap_m);
+            so_far.gaps_texel.extend(shape.gap_texel);
             so_far.penumbrae.extend(shape.penumbra);
             if let Some(last) = &last {
                 let frames = [frame_of(last, &so_far.last_v), frame_of(&truth, &v.v)];
@@ -251,6 +255,7 @@ impl Running {
     fn put(&self, row: &mut Row) {
         row.errors = Errors::mean(&self.errors);
         row.gap_m = self.gaps_m.iter().copied().reduce(f64::max);
+        row.gap_texel = self.gaps_texel.iter().copied().reduce(f64::max);
         let average = |list: &[f64]| (!list.is_empty()).then(|| list.iter().sum::<f64>() / list.len() as f64);
         row.penumbra = average(&self.penumbrae);
         row.flicker = average(&self.flickers);
@@ -354,6 +359,7 @@ fn row(
         params: params(settings),
         errors: Errors::default(),
         gap_m: None,
+        gap_texel: None,
         penumbra: None,
         flicker: None,
         flip: flip(reference, &picture, size.x, size.y),

@@ -165,7 +165,8 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
     let small = ("map_size", "256");
     let biases: Vec<String> = (0..12).map(|i| format!("{}", 1e-4 * f64::from(1 << i))).collect();
     let uniform = biases.iter().map(|bias| settings("matrix-bias", &[small, ("matrix_bias", bias)]));
-    let techniques = std::iter::once(settings("linear", &[small, ("bias", "slope")])).chain(uniform).collect();
+    let techniques =
+        std::iter::once(settings("linear", &[small, ("bias", "slope")])).chain(uniform).collect();
     // Large enough that a texel is some pixels and the shadows are some texels wide.
     let mut plan = plan(&scene, techniques);
     plan.options.size = UVec2::splat(4 * SIDE);
