@@ -211,6 +211,8 @@ fn measure_group(
         made.truth.excluded_pixels += found.excluded_pixels;
         let scene = Shot { gpu, scene: alone, camera, options: &plan.options };
         let reference = (frame == shown).then(|| scene.of_truth(&truth)).transpose()?;
+        // One for all techniques: what costs time is the making.
+        let bare = (frame == shown).then(|| scene.renderer(&unshadowed()?, View::Final)).transpose()?;
         for (i, settings) in plan.techniques.iter().enumerate() {
             let label = format!("measuring {}", settings.technique.id);
             progress_to(progress, &label, (done + 1 + i) as f32)?;
@@ -225,8 +227,8 @@ fn measure_group(
                 let frames = [frame_of(last, &so_far.last_v), frame_of(&truth, &v.v)];
                 so_far.flickers.extend(flicker(&frames));
             }
-            if let Some(reference) = &reference {
-                made.rows.push(row(&scene, settings, &truth, &v.v, reference, at, plan.frames)?);
+            if let (Some(reference), Some(bare)) = (&reference, &bare) {
+                made.rows.push(row(&scene, settings, &truth, &v.v, reference, bare, at, plan.frames)?);
             }
             so_far.last_v = v.v;
         }
@@ -333,18 +335,22 @@ fn png(truth: &ViewTruth, rgba: &[u8]) -> Result<Vec<u8>, MeasureError> {
 }
 
 /// A row with its pictures and costs; errors over all frames, and names, are put in later.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "a row is made of all that was found out, and it has one caller"
+)]
 fn row(
     shot: &Shot<'_>,
     settings: &Settings,
     truth: &ViewTruth,
     v: &[Vec3],
     reference: &[u8],
+    bare: &Renderer<'_>,
     at: &At<'_>,
     frames: u32,
 ) -> Result<Row, MeasureError> {
     let with = shot.renderer(settings, View::Final)?;
-    let without = shot.renderer(&unshadowed()?, View::Final)?;
-    let cost = Cost::measure(&with, &without, settings, frames)?;
+    let cost = Cost::measure(&with, bare, settings, frames)?;
     let picture = with.picture()?;
     let size = truth.size();
     let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);
