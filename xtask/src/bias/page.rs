@@ -1,7 +1,7 @@
 //! The page from what was measured.
 
 use super::candidates::{CANDIDATES, Group};
-use super::{BUILT_IN, Kind, MODEL_SIZE, Measured, PICTURE, SCALES, SIZES, Score};
+use super::{BUILT_IN, Kind, MODEL_SIZE, Measured, PICTURE, SCALES, SIZE_OF_OTHERS, SIZES, Score};
 use crate::machine;
 use std::fmt::Write;
 
@@ -106,7 +106,10 @@ fn of_auto(page: &mut String, measured: &Measured) {
         }
     }
     for (scene, scale) in scenes {
-        for kind in Kind::ALL {
+        let is_there = |kind: &Kind| {
+            measured.scores.iter().any(|s| s.scene == scene && s.scale == scale && s.kind == *kind)
+        };
+        for kind in Kind::ALL.into_iter().filter(is_there) {
             let here = |s: &&Score| s.scene == scene && s.scale == scale && s.kind == kind;
             let found = cells(worst(measured.scores.iter().filter(is_auto).filter(here)));
             let name = match scale {
@@ -123,7 +126,8 @@ fn how(page: &mut String, measured: &Measured) {
     let _ = writeln!(
         page,
         "\n## How it was measured\n\n```sh\ncargo xtask bias\n```\n\n{} rows in {:.0} minutes on {}, adapter `{}`, driver {}, at the \
-         commit of {}. Built-in scenes: {}, at scales {}, maps of {} texels. Real models: maps of {MODEL_SIZE}, on a ground. \
+         commit of {}. Built-in scenes: {}, at scales {}, maps of {} texels (at scales other than 1, all but `auto` with {SIZE_OF_OTHERS} only). Real models: maps \
+         of {MODEL_SIZE}, on a ground, a spot light. \
          Pictures of {PICTURE} pixels from each scene's first camera. Spot lights: the built-in scenes' own, and a cone of 30 \
          degrees for models; point lights stand where the command's default light does. Each row is one technique of \
          `umbrage compare --json`, and what acne, leak, gap and sure receivers are stands in [guide.md](guide.md). A gap in \
