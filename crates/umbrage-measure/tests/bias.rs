@@ -133,3 +133,26 @@ fn what_lacks_it_is_seen_to_fail() {
     let auto = measured(&gpu, &scene("contact", "0.01", false), &[("pcf", &[("width", "5")])], &map);
     assert_eq!(auto.iter().find_map(broken), None);
 }
+
+#[test]
+fn every_offset_of_normal_does_its_part() {
+    let Some(gpu) = gpu() else { return };
+    let scene = scene("contact", "1", false);
+    let bare = [("map_size", "512"), ("bias", "normal"), ("normal_offset", "0"), ("constant", "0")];
+    let nothing = measured(&gpu, &scene, &[("linear", &[])], &bare);
+    assert!(nothing[0].errors.acne > 0.1, "{}", nothing[0].errors.acne);
+    for alone in [
+        ("normal_always", "3"),
+        ("normal_tilt", "20"),
+        ("depth_texel", "5"),
+        ("depth_m", "0.1"),
+        ("depth_share", "0.02"),
+        ("polygon_slope", "3"),
+    ] {
+        let with = [&bare[..], &[alone]].concat();
+        let acne = measured(&gpu, &scene, &[("linear", &[])], &with)[0].errors.acne;
+        assert!(acne < 0.2 * nothing[0].errors.acne, "{alone:?}: {acne} of {}", nothing[0].errors.acne);
+    }
+    let sine = measured(&gpu, &scene, &[("linear", &[])], &[&bare[..2], &[("normal_offset", "3")]].concat());
+    assert!(sine[0].errors.acne < 0.2 * nothing[0].errors.acne, "{}", sine[0].errors.acne);
+}
