@@ -1,5 +1,9 @@
 //! Every command and option. The parser, the help texts, the completions and the man pages are made from these.
 
+mod bench;
+
+pub use bench::{BenchArgs, BenchCommand, ThreadedArgs};
+
 use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair, TechniqueSpec};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
@@ -156,6 +160,20 @@ pub struct SceneArgs {
     #[arg(long, help_heading = "Machine")]
     pub all_casters: bool,
 
+    /// A file with a WGSL function that moves every vertex, in maps and pictures: fn umbrage_deform(p_world: vec3f, p_object:
+    /// vec3f, time_s: f32) -> vec3f. It is told --time
+    #[arg(long, value_name = "FILE", help_heading = "Scene")]
+    pub deform: Option<PathBuf>,
+
+    /// How far --deform may move a vertex, metres: what is culled and fitted keeps so much room
+    #[arg(long, value_name = "METRES", value_parser = specs::length, default_value = "0", requires = "deform", help_heading = "Scene")]
+    pub deform_reach: f32,
+
+    /// A file with the weights of the filter `kernel`: fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) -> vec4f, of
+    /// four texels whose centres lie so many texels from the receiver; view.width_texel is the parameter `width`
+    #[arg(long, value_name = "FILE", help_heading = "Picture")]
+    pub kernel: Option<PathBuf>,
+
     /// Use the first graphics adapter whose name contains this; `umbrage doctor` lists them
     #[arg(long, value_name = "NAME", env = "UMBRAGE_ADAPTER", help_heading = "Machine")]
     pub adapter: Option<String>,
@@ -172,6 +190,8 @@ const RENDER_EXAMPLES: &str = "Examples:
       what a coarse map without filter looks like
   umbrage render builtin:columns --view depth -o map.png
       the light's map itself: near black, far white
+  umbrage render builtin:columns --view density --set projection=lispsm -o density.png
+      texels of the map in each pixel, with a legend and a histogram; --json has the numbers
   umbrage render model.obj --light kind=directional,direction=-1:-2:-1,lux=3 --size 1920x1080 --msaa 4
       under a sun of your own
   umbrage render --frames 20 --statistics --json
@@ -198,6 +218,11 @@ pub struct RenderArgs {
     /// Change a choice or parameter of the technique; may be given several times
     #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
     pub set: Vec<Pair>,
+
+    /// Look up maps as they are while nothing moves, as an application would; without it every frame draws all its maps,
+    /// so that costs are those of a moving scene
+    #[arg(long, help_heading = "Shadow")]
+    pub reuse: bool,
 
     /// What the picture shows
     #[arg(long, value_name = "VIEW", default_value = "final", value_parser = view_ids(), help_heading = "Picture")]
@@ -338,40 +363,6 @@ pub struct CompareArgs {
     pub json: bool,
 }
 
-const BENCH_EXAMPLES: &str = "Examples:
-  umbrage bench
-  umbrage bench model.glb --techniques all --frames 60
-  umbrage bench --lights-from cases.json:A knots.glb --techniques hard,linear --json
-
-Frames of the techniques take turns, so that what else the machine does meets all of them alike. `shadow cost` is the
-median minus that of the unshadowed frame. Vertex and fragment runs are counted in a frame of their own.";
-
-/// `umbrage bench`
-#[derive(Args, Debug)]
-#[command(after_long_help = BENCH_EXAMPLES)]
-pub struct BenchArgs {
-    /// Scene, lights, picture, machine.
-    #[command(flatten)]
-    pub scene: SceneArgs,
-
-    /// Which techniques, by commas, or all; unshadowed is always measured
-    #[arg(short, long, value_name = "ID,...", default_value = "unshadowed,linear", value_delimiter = ',',
-          value_parser = technique_ids(&["all"]), help_heading = "Shadow")]
-    pub techniques: Vec<String>,
-
-    /// Change a choice or parameter in every technique but unshadowed; all of them must have it
-    #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
-    pub set: Vec<Pair>,
-
-    /// Measured frames of each technique, after one that warms up
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Output")]
-    pub frames: u32,
-
-    /// Print one JSON object
-    #[arg(long, help_heading = "Output")]
-    pub json: bool,
-}
-
 /// `umbrage techniques`
 #[derive(Args, Debug)]
 pub struct TechniquesArgs {
@@ -379,7 +370,7 @@ pub struct TechniquesArgs {
     #[arg(long)]
     pub json: bool,
 
-    /// Print every combination of the four choices of a map, and whether it is valid
+    /// Print every combination of the five choices of a map, and whether it is valid
     #[arg(long)]
     pub matrix: bool,
 }

@@ -1,6 +1,6 @@
 //! `umbrage bench`: what techniques cost, frame by frame in turns.
 
-use crate::args::BenchArgs;
+use crate::args::{BenchArgs, BenchCommand};
 use crate::fault::{Fault, say, tell};
 use crate::json::{self, Machine, MapFormat, PassJson, SceneJson};
 use crate::setup::{self, Stage};
@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use std::io::{IsTerminal, Write};
 use umbrage_render::umbrage::core::technique::{Settings, TECHNIQUES};
-use umbrage_render::{Gpu, Measure, Renderer};
+use umbrage_render::{Gpu, Measure, RenderOptions, Renderer};
 
 const UNSHADOWED: &str = "unshadowed";
 
@@ -43,6 +43,11 @@ struct Row {
     vertex_runs: Option<u64>,
     fragment_runs: Option<u64>,
     shadow_memory_bytes: u64,
+    /// Of each light's maps.
+    shadow_memory_per_light_bytes: Vec<u64>,
+    /// In all timed frames together.
+    maps_drawn: u64,
+    maps_reused: u64,
     passes: Vec<PassJson>,
     frames_ms: Vec<f64>,
 }
@@ -52,12 +57,15 @@ struct Row {
 /// # Errors
 /// As `umbrage render`.
 pub fn run(args: &BenchArgs) -> Result<(), Fault> {
+    if let Some(BenchCommand::Threaded(args)) = &args.other {
+        return crate::threaded::run(args);
+    }
     let ids = techniques(&args.techniques);
     all_settings(&ids, args, None)?;
     let stage = setup::stage(&args.scene)?;
     let settings = all_settings(&ids, args, stage.map_size)?;
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
-    let renderers = settings
+    let mut renderers = settings
         .iter()
         .map(|settings| renderer(args, &stage, &gpu, settings))
         .collect::<Result<Vec<_>, _>>()?;
@@ -70,10 +78,10 @@ pub fn run(args: &BenchArgs) -> Result<(), Fault> {
     stage.notes.iter().for_each(|note| tell("note", note));
     warnings.iter().for_each(|warning| tell("warning", warning));
 
-    let frames_ms = measure(&renderers, args.frames)?;
+    let timed = measure(&mut renderers, args.frames)?;
     let mut rows = Vec::new();
-    for ((settings, renderer), frames_ms) in settings.iter().zip(&renderers).zip(frames_ms) {
-        rows.push(row(settings, renderer, frames_ms)?);
+    for ((settings, renderer), timed) in settings.iter().zip(&mut renderers).zip(timed) {
+        rows.push(row(settings, renderer, timed)?);
     }
     gpu.check()?;
     let bare = rows.first().map(|row| row.frames_ms.clone()).unwrap_or_default();
@@ -123,33 +131,46 @@ fn renderer<'a>(
     gpu: &'a Gpu,
     settings: &Settings,
 ) -> Result<Renderer<'a>, Fault> {
-    let options = setup::options(&args.scene, stage, settings.clone());
+    let options =
+        RenderOptions { reuse: args.reuse, ..setup::options(&args.scene, stage, settings.clone())? };
     Ok(Renderer::new(gpu, &stage.scene, &stage.camera, options)?)
 }
 
-/// Times of each technique's frames, in turns.
-fn measure(renderers: &[Renderer<'_>], frames: u32) -> Result<Vec<Vec<f64>>, Fault> {
+/// A technique's frames.
+#[derive(Default)]
+struct Timed {
+    frames_ms: Vec<f64>,
+    maps_drawn: u64,
+    maps_reused: u64,
+}
+
+/// Each technique's frames, in turns.
+fn measure(renderers: &mut [Renderer<'_>], frames: u32) -> Result<Vec<Timed>, Fault> {
     let progress = std::io::stderr().is_terminal();
-    for renderer in renderers {
+    for renderer in renderers.iter_mut() {
         renderer.frame(Measure::Frame)?; // Drivers compile in the first.
     }
-    let mut times = vec![Vec::with_capacity(frames as usize); renderers.len()];
+    let mut all: Vec<Timed> = renderers.iter().map(|_| Timed::default()).collect();
     for frame in 0..frames {
         if progress {
             let _ = write!(std::io::stderr(), "\rframe {} of {frames}", frame + 1);
         }
-        for (renderer, times) in renderers.iter().zip(&mut times) {
-            times.push(renderer.frame(Measure::Frame)?.frame_ms);
+        for (renderer, timed) in renderers.iter_mut().zip(&mut all) {
+            let report = renderer.frame(Measure::Frame)?;
+            timed.frames_ms.push(report.frame_ms);
+            timed.maps_drawn += report.maps_drawn;
+            timed.maps_reused += report.maps_reused;
         }
     }
     if progress {
         let _ = write!(std::io::stderr(), "\r\u{1b}[K");
     }
-    Ok(times)
+    Ok(all)
 }
 
 /// One technique's row. Passes are timed and counted in frames of their own, because that slows them.
-fn row(settings: &Settings, renderer: &Renderer<'_>, frames_ms: Vec<f64>) -> Result<Row, Fault> {
+fn row(settings: &Settings, renderer: &mut Renderer<'_>, timed: Timed) -> Result<Row, Fault> {
+    let frames_ms = timed.frames_ms;
     let mut measured = renderer.frame(Measure::Passes)?.passes;
     for (pass, counted) in measured.iter_mut().zip(renderer.frame(Measure::Counts)?.passes) {
         pass.statistics = counted.statistics;
@@ -174,9 +195,21 @@ fn row(settings: &Settings, renderer: &Renderer<'_>, frames_ms: Vec<f64>) -> Res
         vertex_runs: counted(|s| s.vertex_runs),
         fragment_runs: counted(|s| s.fragment_runs),
         shadow_memory_bytes: renderer.shadow_memory_bytes(),
+        shadow_memory_per_light_bytes: renderer.shadow_memory_of_lights(),
+        maps_drawn: timed.maps_drawn,
+        maps_reused: timed.maps_reused,
         passes,
         frames_ms,
     })
+}
+
+/// Memory of a light's maps; the least and the most where lights differ.
+fn per_light(bytes: &[u64]) -> String {
+    match (bytes.iter().min(), bytes.iter().max()) {
+        (Some(least), Some(most)) if least == most => text::bytes(*most),
+        (Some(least), Some(most)) => format!("{}..{}", text::bytes(*least), text::bytes(*most)),
+        _ => "-".to_owned(),
+    }
 }
 
 fn describe(report: &Report) -> String {
@@ -192,6 +225,7 @@ fn describe(report: &Report) -> String {
         "vertex runs",
         "fragment runs",
         "map memory",
+        "a light",
     ];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
     let runs = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), text::count);
@@ -208,6 +242,7 @@ fn describe(report: &Report) -> String {
             runs(row.vertex_runs),
             runs(row.fragment_runs),
             text::bytes(row.shadow_memory_bytes),
+            per_light(&row.shadow_memory_per_light_bytes),
         ]);
     }
     format!(

@@ -54,7 +54,7 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
     let plan = Plan {
         cameras: cameras(args, &stage)?,
         light_numbers: stage.light_numbers.clone(),
-        options: RenderOptions { samples: 1, ..setup::options(&args.scene, &stage, techniques[0].clone()) },
+        options: RenderOptions { samples: 1, ..setup::options(&args.scene, &stage, techniques[0].clone())? },
         techniques,
         quality: quality(&args.quality),
         frames: args.frames,

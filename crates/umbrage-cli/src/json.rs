@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 pub use umbrage_measure::{decimal, median, params};
 use umbrage_render::umbrage::ChosenFormat;
 use umbrage_render::umbrage::core::technique::{Param, ParamDefault, Source};
-use umbrage_render::{PassReport, Renderer};
+use umbrage_render::{DensityStatistics, PERCENTILES, PassReport, Renderer, Spread, View};
 use umbrage_scene::Scene;
 
 /// A picture and all that is known of it.
@@ -26,7 +26,14 @@ pub struct RenderJson {
     pub frame_ms: f64,
     pub frames_ms: Vec<f64>,
     pub shadow_memory_bytes: u64,
+    /// Of each light's maps.
+    pub shadow_memory_per_light_bytes: Vec<u64>,
+    /// In all frames together, also those that are not timed.
+    pub maps_drawn: u64,
+    pub maps_reused: u64,
     pub exposure: f64,
+    /// `null` in views that do not hold it.
+    pub density: Option<DensityJson>,
     pub timings: Timings,
     pub output: String,
     pub notes: Vec<String>,
@@ -100,6 +107,76 @@ pub struct StatisticsJson {
     pub vertex_runs: u64,
     pub clipped_triangles: u64,
     pub fragment_runs: u64,
+}
+
+/// Texels of the light's map in a pixel, linear: 1 is one texel a pixel.
+#[derive(Debug, Serialize)]
+pub struct DensityJson {
+    /// What is counted: pixels of the `picture`, or of the `map` as it is shown.
+    pub of: &'static str,
+    /// Those that show a receiver.
+    pub pixels: usize,
+    /// Their share of the picture or the map, 0..1.
+    pub share: f64,
+    /// Square root of the number of texels in a pixel; absent where no receiver is seen.
+    #[serde(flatten)]
+    pub mean: Option<SpreadJson>,
+    /// Texels along the direction of each pixel in which there are fewest.
+    pub worst_direction: Option<SpreadJson>,
+    pub histogram: Vec<OctaveJson>,
+}
+
+/// What many numbers span.
+#[derive(Debug, Serialize)]
+pub struct SpreadJson {
+    pub least: f64,
+    /// `p01` is what one pixel in a hundred is not above.
+    pub percentiles: Map<String, Value>,
+    pub most: f64,
+    /// Geometric.
+    pub mean: f64,
+}
+
+/// Share of the receivers with so many texels a pixel.
+#[derive(Debug, Serialize)]
+pub struct OctaveJson {
+    pub from: f64,
+    /// `null`: without bound.
+    pub to: Option<f64>,
+    pub share: f64,
+}
+
+impl DensityJson {
+    /// Of a view, with nothing to tell where no receiver is seen.
+    pub fn of(view: View, found: Option<&DensityStatistics>) -> Self {
+        let octave = |octave: &umbrage_render::OctaveShare| OctaveJson {
+            from: octave.from,
+            to: octave.to.is_finite().then_some(octave.to),
+            share: octave.share,
+        };
+        Self {
+            of: if view == View::DensityLight { "map" } else { "picture" },
+            pixels: found.map_or(0, |found| found.pixels),
+            share: found.map_or(0.0, |found| found.share),
+            mean: found.map(|found| SpreadJson::from(&found.mean)),
+            worst_direction: found.map(|found| SpreadJson::from(&found.worst_direction)),
+            histogram: found.map_or(Vec::new(), |found| found.histogram.iter().map(octave).collect()),
+        }
+    }
+}
+
+impl From<&Spread> for SpreadJson {
+    fn from(spread: &Spread) -> Self {
+        let percentiles = PERCENTILES.iter().zip(spread.percentiles);
+        Self {
+            least: spread.least,
+            percentiles: percentiles
+                .map(|(percent, value)| (format!("p{percent:02}"), value.into()))
+                .collect(),
+            most: spread.most,
+            mean: spread.mean,
+        }
+    }
 }
 
 /// Where the time went, milliseconds.

@@ -16,6 +16,7 @@ mod setup;
 mod specs;
 mod techniques;
 mod text;
+mod threaded;
 mod truth;
 mod wgsl;
 

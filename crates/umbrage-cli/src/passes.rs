@@ -4,7 +4,7 @@ use crate::args::PassesArgs;
 use crate::fault::{Fault, say};
 use crate::{json, setup};
 use serde_json::json;
-use umbrage_render::umbrage::core::plan::{Cull, Draws, Pass, Target, plan};
+use umbrage_render::umbrage::core::plan::{Cull, Draws, Keeps, Pass, Target, plan};
 
 /// Prints the passes in the order in which they run.
 ///
@@ -27,6 +27,13 @@ fn describe(pass: &Pass) -> serde_json::Value {
         Target::Map { storage, size_texel } => {
             json!({ "kind": "map", "storage": storage.row().id, "size_texel": size_texel })
         }
+        Target::TranslucentMap { storage, size_texel } => {
+            json!({ "kind": "translucent-map", "storage": storage.row().id, "size_texel": size_texel })
+        }
+        Target::Colors { size_texel } => json!({ "kind": "colors", "size_texel": size_texel }),
+        Target::Layer { size_texel } => {
+            json!({ "kind": "layer", "storage": "depth32f", "size_texel": size_texel })
+        }
         Target::Picture => json!({ "kind": "picture" }),
     };
     json!({
@@ -35,8 +42,22 @@ fn describe(pass: &Pass) -> serde_json::Value {
         "target": target,
         "clear_depth": json::decimal(pass.clear_depth),
         "color": pass.color,
-        "cull": match pass.cull { Cull::BackOfClosed => "back-of-closed", Cull::ByMaterial => "by-material" },
+        "cull": match pass.cull {
+            Cull::BackOfClosed => "back-of-closed",
+            Cull::FrontOfClosed => "front-of-closed",
+            Cull::Nothing => "nothing",
+            Cull::ByMaterial => "by-material",
+        },
+        "keeps": match pass.keeps {
+            Keeps::Nearest => "nearest",
+            Keeps::Behind => "behind",
+            Keeps::Midpoint => "midpoint",
+        },
         "polygon_offset": { "constant": pass.offset.constant, "slope": json::decimal(pass.offset.slope) },
-        "draws": match pass.draws { Draws::Casters => "casters", Draws::Surfaces => "surfaces" },
+        "draws": match pass.draws {
+            Draws::Casters => "casters",
+            Draws::Translucent => "translucent",
+            Draws::Surfaces => "surfaces",
+        },
     })
 }

@@ -2,13 +2,15 @@
 
 use crate::args::RenderArgs;
 use crate::fault::{Fault, say, tell};
-use crate::json::{self, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
+use crate::json::{self, DensityJson, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
 use crate::setup::{self, Stage};
 use crate::text;
 use std::path::Path;
 use std::time::Instant;
 use umbrage_render::picture::write_png;
-use umbrage_render::{Gpu, Measure, PassReport, RenderOptions, Renderer, View};
+use umbrage_render::{
+    DensityStatistics, FrameReport, Gpu, Measure, PassReport, RenderOptions, Renderer, View,
+};
 
 /// Draws it, writes it, says what it is.
 ///
@@ -23,14 +25,15 @@ pub fn run(args: &RenderArgs) -> Result<(), Fault> {
     let options = RenderOptions {
         view,
         shown_light: args.light_index,
-        ..setup::options(&args.scene, &stage, settings)
+        reuse: args.reuse,
+        ..setup::options(&args.scene, &stage, settings)?
     };
 
     let start = Instant::now();
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
-    let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
+    let mut renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
     let setup_ms = ms_since(start);
-    let drawn = draw(&renderer, args.frames, args.statistics)?;
+    let drawn = draw(&mut renderer, args.frames, args.statistics)?;
     let pixels = renderer.picture()?;
     gpu.check()?;
 
@@ -59,17 +62,29 @@ struct Drawn {
     frames_ms: Vec<f64>,
     /// Of one frame, with all that could be measured of it.
     passes: Vec<PassReport>,
+    /// In all frames together.
+    maps_drawn: u64,
+    maps_reused: u64,
+    /// Texels per pixel, in the views that show them; `None` inside where no receiver is seen.
+    density: Option<Option<DensityStatistics>>,
 }
 
 /// The frames; the first is dropped when there are several, because drivers compile then. Passes are measured in a frame
 /// of their own, because that takes time too; a single frame has to do for both.
-fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, Fault> {
+fn draw(renderer: &mut Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, Fault> {
     let frames = if count > 1 { count } else { 0 };
     let mut frames_ms = Vec::new();
+    let (mut maps_drawn, mut maps_reused) = (0, 0);
+    let mut frame = |measure| -> Result<FrameReport, Fault> {
+        let report = renderer.frame(measure)?;
+        maps_drawn += report.maps_drawn;
+        maps_reused += report.maps_reused;
+        Ok(report)
+    };
     for _ in 0..frames {
-        frames_ms.push(renderer.frame(Measure::Frame)?.frame_ms);
+        frames_ms.push(frame(Measure::Frame)?.frame_ms);
     }
-    let measured = renderer.frame(Measure::Passes)?;
+    let measured = frame(Measure::Passes)?;
     if frames_ms.is_empty() {
         frames_ms.push(measured.frame_ms);
     } else {
@@ -77,11 +92,16 @@ fn draw(renderer: &Renderer<'_>, count: u32, statistics: bool) -> Result<Drawn, 
     }
     let mut passes = measured.passes;
     if statistics {
-        for (pass, counted) in passes.iter_mut().zip(renderer.frame(Measure::Counts)?.passes) {
-            pass.statistics = counted.statistics;
+        let counted = frame(Measure::Counts)?.passes;
+        for pass in &mut passes {
+            // By name: a map that is reused has no pass any more.
+            let same = counted.iter().find(|other| other.name == pass.name);
+            pass.statistics = same.and_then(|other| other.statistics);
         }
     }
-    Ok(Drawn { frames_ms, passes })
+    let shows_density = renderer.options().view.is_density();
+    let density = if shows_density { Some(renderer.density_statistics()?) } else { None };
+    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused, density })
 }
 
 /// Can the picture be written there? Asked before any work.
@@ -138,12 +158,35 @@ fn report(
         frame_ms,
         frames_ms: drawn.frames_ms.clone(),
         shadow_memory_bytes: renderer.shadow_memory_bytes(),
+        shadow_memory_per_light_bytes: renderer.shadow_memory_of_lights(),
+        maps_drawn: drawn.maps_drawn,
+        maps_reused: drawn.maps_reused,
         exposure: json::decimal(renderer.exposure()),
+        density: drawn.density.as_ref().map(|found| DensityJson::of(options.view, found.as_ref())),
         timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
         output: args.output.display().to_string(),
         notes: stage.notes.clone(),
         warnings,
     }
+}
+
+/// Texels per pixel for people; the numbers are in `--json`.
+fn density_sentence(view: View, found: Option<&DensityStatistics>) -> String {
+    let Some(found) = found else {
+        return "texels per pixel: no surface that the light could reach is in sight\n".to_owned();
+    };
+    let [mean, hundredth, worst] =
+        [found.mean.mean, found.mean.percentiles[0], found.worst_direction.percentiles[0]].map(text::rough);
+    let (counted, seen) = match view {
+        View::DensityLight => {
+            ("texels", format!("; the eye sees {} % of the map", text::rough(100.0 * found.share)))
+        }
+        _ => ("pixels", String::new()),
+    };
+    format!(
+        "texels per pixel: {mean} in the mean, 1 % of the {counted} below {hundredth}, along the worst direction below \
+         {worst}{seen}\n"
+    )
 }
 
 fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
@@ -165,8 +208,10 @@ fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>,
         0 | 1 => format!("first frame {:.0} ms", json::median(&drawn.frames_ms)),
         many => format!("{:.1} ms, the median of {many} frames", json::median(&drawn.frames_ms)),
     };
+    let density =
+        drawn.density.as_ref().map_or(String::new(), |found| density_sentence(options.view, found.as_ref()));
     format!(
-        "{}: {} triangles, {}{maps}, on {}: {time}\n{} view of {}x{} pixels written to {}\n",
+        "{}: {} triangles, {}{maps}, on {}: {time}\n{density}{} view of {}x{} pixels written to {}\n",
         stage.scene.name,
         text::count(stage.scene.triangles()),
         options.settings.technique.id,

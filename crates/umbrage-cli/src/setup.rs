@@ -6,6 +6,7 @@ use crate::fault::{Fault, suggest};
 use crate::specs::{CameraChoice, CameraSpec, Exposure, Pair};
 use glam::{UVec2, Vec3};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 use umbrage_render::RenderOptions;
 use umbrage_render::umbrage::core::technique::Settings;
@@ -239,9 +240,12 @@ pub fn settings(id: &str, set: &[Pair], map_size: Option<u32>) -> Result<Setting
 }
 
 /// Everything about the picture that the shared options say.
-pub fn options(args: &SceneArgs, stage: &Stage, settings: Settings) -> RenderOptions {
+///
+/// # Errors
+/// A file of the user's own WGSL that cannot be read.
+pub fn options(args: &SceneArgs, stage: &Stage, settings: Settings) -> Result<RenderOptions, Fault> {
     let plain = RenderOptions::new(settings);
-    RenderOptions {
+    Ok(RenderOptions {
         size: stage.size,
         samples: args.msaa,
         all_blinn: args.shading == "documents",
@@ -253,8 +257,20 @@ pub fn options(args: &SceneArgs, stage: &Stage, settings: Settings) -> RenderOpt
         },
         background: stage.background.unwrap_or(plain.background),
         all_casters: args.all_casters,
+        deform: args.deform.as_deref().map(own_wgsl).transpose()?,
+        deform_reach_m: args.deform_reach,
+        time_s: args.time.unwrap_or(0.0),
+        kernel: args.kernel.as_deref().map(own_wgsl).transpose()?,
         ..plain
-    }
+    })
+}
+
+/// The text of a file of the user's own WGSL.
+fn own_wgsl(path: &Path) -> Result<Arc<str>, Fault> {
+    let text = std::fs::read_to_string(path).map_err(|e| {
+        Fault::Failed(format!("cannot read {}: {e}; name a text file with a WGSL function", path.display()))
+    })?;
+    Ok(Arc::from(text))
 }
 
 #[cfg(test)]

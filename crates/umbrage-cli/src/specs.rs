@@ -198,6 +198,27 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     number(text).map_err(|_| "it must be a number of seconds, for example 0.5".into())
 }
 
+/// Metres, 0 or more.
+pub fn length(text: &str) -> Result<f32, String> {
+    number(text).ok().filter(|x| *x >= 0.0).ok_or_else(|| "it must be a number of metres, 0 or more".into())
+}
+
+/// A time of milliseconds that a frame may wait, so not for ever.
+pub fn milliseconds(text: &str) -> Result<f32, String> {
+    number(text)
+        .ok()
+        .filter(|x| (0.0..=1000.0).contains(x))
+        .ok_or_else(|| "it must be a number of milliseconds from 0 to 1000".into())
+}
+
+/// How long a row of a measurement takes.
+pub fn row_seconds(text: &str) -> Result<f32, String> {
+    number(text)
+        .ok()
+        .filter(|x| (0.05..=600.0).contains(x))
+        .ok_or_else(|| "it must be a number of seconds from 0.05 to 600".into())
+}
+
 /// A number from 0 to 1.
 pub fn share(text: &str) -> Result<f32, String> {
     number(text)

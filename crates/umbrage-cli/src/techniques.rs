@@ -7,7 +7,7 @@ use crate::text;
 use serde_json::{Value, json};
 use umbrage_render::umbrage::core::technique::{
     Bias, Choice, Combination, DEFAULT, Filter, Param, ParamDefault, Projection, Settings, Source, Storage,
-    TECHNIQUES, Technique,
+    TECHNIQUES, Technique, Translucent,
 };
 
 /// Prints the table.
@@ -34,6 +34,7 @@ fn tables() -> impl Iterator<Item = (&'static str, Vec<&'static Choice>)> {
         Projection::ALL.iter().map(|c| c.row()).collect(),
         Bias::ALL.iter().map(|c| c.row()).collect(),
         Filter::ALL.iter().map(|c| c.row()).collect(),
+        Translucent::ALL.iter().map(|c| c.row()).collect(),
     ];
     Settings::CHOICES.into_iter().zip(rows)
 }

@@ -65,6 +65,16 @@ pub fn count(number: u64) -> String {
     text
 }
 
+/// A number above 0 with about two digits that count.
+pub fn rough(number: f64) -> String {
+    match number {
+        _ if number < 0.001 => "0.001".to_owned(),
+        _ if number < 0.1 => format!("{number:.3}"),
+        _ if number < 10.0 => format!("{number:.2}"),
+        _ => format!("{number:.0}"),
+    }
+}
+
 /// Bytes for people.
 pub fn bytes(number: u64) -> String {
     match number {
@@ -90,6 +100,7 @@ mod tests {
     #[test]
     fn numbers_for_people() {
         assert_eq!([count(7), count(1234), count(519_168)], ["7", "1,234", "519,168"]);
+        assert_eq!([0.0, 0.0456, 0.456, 4.56, 45.6].map(rough), ["0.001", "0.046", "0.46", "4.56", "46"]);
         assert_eq!([bytes(12), bytes(2048), bytes(16 << 20)], ["12 B", "2.0 KiB", "16.0 MiB"]);
     }
 }

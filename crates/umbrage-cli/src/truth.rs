@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use umbrage_measure::picture_of_v;
 use umbrage_render::picture::write_png;
-use umbrage_render::{GivenVisibility, Gpu, MAX_LIGHTS, Measure, RenderOptions, Renderer, View};
+use umbrage_render::{GivenVisibility, Gpu, MAX_LIGHTS, Measure, RenderOptions, Renderer, View, deformed};
 use umbrage_truth::{Quality, Rays, Surfaces, Visibility};
 
 #[derive(Serialize)]
@@ -65,7 +65,8 @@ pub fn run(args: &TruthArgs) -> Result<(), Fault> {
     let start = Instant::now();
     // The bar's share of building is a guess; rays take most of the time in all but the largest scenes.
     stopped(progress.at("building the ray hierarchy", 0.0))?;
-    let rays = Rays::new(&stage.scene)?;
+    let moved = deformed_scene(args, &stage)?;
+    let rays = Rays::new(moved.as_ref().unwrap_or(&stage.scene))?;
     let build_s = start.elapsed().as_secs_f64();
     let surfaces = Surfaces::new(&rays, &stage.camera, stage.size, &|share| {
         progress.at("tracing rays of sight", 0.1 * share)
@@ -113,6 +114,16 @@ pub fn run(args: &TruthArgs) -> Result<(), Fault> {
     }
 }
 
+/// The scene as the user's own function leaves it, where there is one.
+fn deformed_scene(args: &TruthArgs, stage: &Stage) -> Result<Option<umbrage_scene::Scene>, Fault> {
+    if args.scene.deform.is_none() {
+        return Ok(None);
+    }
+    let options = setup::options(&args.scene, stage, setup::settings("unshadowed", &[], None)?)?;
+    let gpu = Gpu::new(args.scene.adapter.as_deref())?;
+    Ok(Some(deformed(&gpu, &stage.scene, &options)?))
+}
+
 fn stopped(flow: std::ops::ControlFlow<()>) -> Result<(), Fault> {
     if flow.is_break() { Err(Fault::Stopped) } else { Ok(()) }
 }
@@ -129,10 +140,10 @@ fn final_picture(args: &TruthArgs, stage: &Stage, found: &[Visibility]) -> Resul
     let of_light: Vec<Vec<Vec3>> = found.iter().map(|truth| truth.v.clone()).collect();
     let options = RenderOptions {
         given: Some(Arc::new(GivenVisibility { of_light })),
-        ..setup::options(&args.scene, stage, settings)
+        ..setup::options(&args.scene, stage, settings)?
     };
     let gpu = Gpu::new(args.scene.adapter.as_deref())?;
-    let renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
+    let mut renderer = Renderer::new(&gpu, &stage.scene, &stage.camera, options)?;
     renderer.frame(Measure::Frame)?;
     let pixels = renderer.picture()?;
     gpu.check()?;

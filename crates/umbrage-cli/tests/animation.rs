@@ -24,9 +24,9 @@ impl Drop for Folder {
     }
 }
 
-/// A triangle of one metre that `Slide` moves along x by 4 m in 2 s, and `Rise` along y.
+/// A slanting triangle of one metre that `Slide` moves along x by 4 m in 2 s, and `Rise` along y.
 fn moves() -> Value {
-    let corners = [0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0];
+    let corners = [0.0, 1.0, 0.0, 1.0, 1.4, 0.0, 0.0, 1.4, 1.0];
     let times = [0.0, 2.0];
     let (slide, rise) = ([0.0, 0.0, 0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 4.0, 0.0]);
     let numbers = corners.iter().chain(&times).chain(&slide).chain(&rise);

@@ -166,8 +166,8 @@ fn wrong_use_names_what_was_meant_before_anything_is_loaded() {
         (&["compare", "--techniques", "hard:bias"], &["key=value", "linear:bias=slope"]),
         (&["compare", "--techniques", "hard:bais=none"], &["`bais`", "`bias`"]),
         (
-            &["bench", "--techniques", "linear,matrix-bias", "--set", "slope_factor=1"],
-            &["`matrix-bias` has no setting"],
+            &["bench", "--techniques", "linear,matrix-bias", "--set", "matrix_bias=0.1"],
+            &["`linear` has no setting"],
         ),
         (&["passes"], &["<ID>"]),
         (&["passes", "liner"], &["`linear`"]),
@@ -262,6 +262,7 @@ fn json_of_a_picture_has_every_key_and_only_finite_numbers() {
         "frames_ms",
         "shadow_memory_bytes",
         "exposure",
+        "density",
         "timings",
         "output",
         "notes",
@@ -319,13 +320,53 @@ fn every_view_of_every_light_kind_is_drawn_or_refused_with_a_reason() {
         return;
     }
     let folder = Folder::new("views");
-    for view in ["final", "visibility", "light", "depth", "distance", "projected"] {
-        for light in ["kind=spot", "kind=directional"] {
+    for view in ["final", "visibility", "light", "depth", "distance", "projected", "density", "density-light"]
+    {
+        for light in ["kind=spot", "kind=directional", "kind=point"] {
             let output = umbrage(&folder.0, &["render", "--size", "64x36", "--view", view, "--light", light]);
             succeeded(&output);
             assert!(text(&output.stdout).contains("written to umbrage.png"), "{}", text(&output.stdout));
         }
     }
+}
+
+#[test]
+fn texels_per_pixel_are_told_as_numbers_and_to_people() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = Folder::new("density");
+    let told = |more: &[&'static str]| {
+        let output = umbrage(&folder.0, &small(&[&["--view", "density", "--json"], more].concat()));
+        succeeded(&output);
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+        json["density"].clone()
+    };
+    let number = |json: &serde_json::Value| json.as_f64().expect("a number");
+    let (fine, coarse) = (told(&["--set", "map_size=512"]), told(&["--set", "map_size=256"]));
+    for part in [&fine, &fine["worst_direction"]] {
+        let steps =
+            ["p01", "p05", "p25", "p50", "p75", "p95", "p99"].map(|p| number(&part["percentiles"][p]));
+        let all = [&[number(&part["least"])], &steps[..], &[number(&part["most"])]].concat();
+        assert!(all.is_sorted(), "{part}");
+        assert!((all[0]..=all[8]).contains(&number(&part["mean"])), "{part}");
+    }
+    // Half the map has half the texels along each pixel, everywhere.
+    for key in ["least", "most", "mean"] {
+        let times = number(&fine[key]) / number(&coarse[key]);
+        assert!((times - 2.0).abs() < 0.06, "{key}: {times}");
+    }
+    assert!(fine["pixels"].as_u64() > Some(500) && fine["of"] == "picture", "{fine}");
+    let octaves = fine["histogram"].as_array().expect("octaves");
+    let shares: f64 = octaves.iter().map(|octave| number(&octave["share"])).sum();
+    assert!((shares - 1.0).abs() < 1e-9 && octaves[9]["to"].is_null(), "{fine}");
+    let nothing = told(&["--camera", "position=0:9:0,target=0:50:0.1"]);
+    assert_eq!((&nothing["pixels"], nothing.get("least")), (&0.into(), None));
+    let output = umbrage(&folder.0, &small(&["--view", "density-light"]));
+    let stdout = text(&output.stdout);
+    assert!(stdout.contains("texels per pixel: ") && stdout.contains("of the map\n"), "{stdout}");
+    let none = ["render", "--view", "density", "-t", "unshadowed"];
+    refused(&umbrage(&folder.0, &none), 2, &["`density` needs a shadow map", "unshadowed"]);
 }
 
 #[test]

@@ -19,6 +19,14 @@ impl Frustum {
         Self { planes_world: [w + x, w - x, w + y, w - y, lowest, w - z] }
     }
 
+    /// The same without the near plane: all that lies before the eye. A map that does not clip at its near plane shows that, the
+    /// nearest of it flattened onto the plane.
+    pub fn from_clip_without_near(clip_from_world: Mat4, depth: DepthConvention) -> Self {
+        let mut made = Self::from_clip(clip_from_world, depth);
+        made.planes_world[if depth.is_reversed() { 5 } else { 4 }] = clip_from_world.transpose().w_axis;
+        made
+    }
+
     /// May any part of the box be inside? Never false for a box that is; seldom true for one that is not.
     pub fn may_see(&self, bounds_world: &Aabb) -> bool {
         if bounds_world.is_empty() {
@@ -77,6 +85,19 @@ mod tests {
                     "{depth:?}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn without_a_near_plane_what_is_close_is_seen_and_what_is_behind_is_not() {
+        for depth in DepthConvention::ALL {
+            let clip = perspective(1.0, 1.0, 5.0, 100.0, depth);
+            let at = |z: f32| Aabb { min: Vec3::new(-0.1, -0.1, z - 0.1), max: Vec3::new(0.1, 0.1, z + 0.1) };
+            let (closed, open) =
+                (Frustum::from_clip(clip, depth), Frustum::from_clip_without_near(clip, depth));
+            assert!(!closed.may_see(&at(-2.0)) && open.may_see(&at(-2.0)), "{depth:?}");
+            assert!(closed.may_see(&at(-9.0)) && open.may_see(&at(-9.0)), "{depth:?}");
+            assert!(!open.may_see(&at(2.0)) && !open.may_see(&at(-200.0)), "{depth:?}");
         }
     }
 

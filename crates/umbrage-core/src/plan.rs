@@ -16,8 +16,39 @@ pub enum Target {
         /// Width and height, texels.
         size_texel: u32,
     },
+    /// A 32-bit float depth texture that the next pass reads; one for all lights, who take turns.
+    Layer {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
+    /// The light's layer of a second map array of the same kind, which holds translucent casters only.
+    TranslucentMap {
+        /// How depth is kept.
+        storage: Storage,
+        /// Width and height, texels.
+        size_texel: u32,
+    },
+    /// The light's layer of the array of colours; the depth of its map is tested and left as it is. Each caster multiplies
+    /// what is there by the share of light that it lets through.
+    Colors {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
     /// The caller's picture and its depth.
     Picture,
+}
+
+/// What is kept of all surfaces that lie behind each other in a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeps {
+    /// The nearest.
+    Nearest,
+    /// The nearest of those strictly behind the layer drawn before: depth peeling (Everitt 2001, "Interactive
+    /// Order-Independent Transparency").
+    Behind,
+    /// The place halfway between the layer drawn before and the nearest surface strictly behind it (Woo 1992). Nothing where
+    /// nothing lies behind.
+    Midpoint,
 }
 
 /// What is drawn.
@@ -25,6 +56,9 @@ pub enum Target {
 pub enum Draws {
     /// All that blocks light, positions only (and texture coordinates where the surface is cut out).
     Casters,
+    /// What blocks light in part: surfaces mixed by alpha, where the technique lets them colour the light. Its casters are then
+    /// without them.
+    Translucent,
     /// All that is seen, with material and light; visibility is looked up inline.
     Surfaces,
 }
@@ -35,6 +69,10 @@ pub enum Cull {
     /// Back faces of casters that are closed and wholly in front of the light: what they block, their front faces
     /// block too. All faces of all others, because a surface blocks light whichever way it faces.
     BackOfClosed,
+    /// Front faces of casters that are closed: who enters a solid must leave it. All faces of all others.
+    FrontOfClosed,
+    /// None: light passes both sides of a bottle, and what lies behind others are also casters that shadow nothing.
+    Nothing,
     /// As each material says.
     ByMaterial,
 }
@@ -64,6 +102,8 @@ pub struct Pass {
     pub color: bool,
     /// Which faces are left out.
     pub cull: Cull,
+    /// What is kept where surfaces lie behind each other.
+    pub keeps: Keeps,
     /// Polygon offset.
     pub offset: PolygonOffset,
     /// What is drawn.
@@ -79,6 +119,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
         clear_depth: DEPTH.clear(),
         color: true,
         cull: Cull::ByMaterial,
+        keeps: Keeps::Nearest,
         offset: PolygonOffset::default(),
         draws: Draws::Surfaces,
     };
@@ -90,13 +131,54 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                 target: Target::Map { storage: combination.storage, size_texel: settings.map_size_texel() },
                 clear_depth: DEPTH.clear(),
                 color: false,
-                cull: Cull::BackOfClosed,
+                cull: match combination.bias {
+                    Bias::Midpoint => Cull::Nothing,
+                    Bias::SecondDepth => Cull::FrontOfClosed,
+                    _ => Cull::BackOfClosed,
+                },
+                keeps: if combination.bias == Bias::Midpoint { Keeps::Midpoint } else { Keeps::Nearest },
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
-            vec![map, lighting]
+            if combination.bias == Bias::Midpoint {
+                return vec![peel_pass(settings.map_size_texel(), 0), map, lighting];
+            }
+            if !combination.colors_light() {
+                return vec![map, lighting];
+            }
+            let size_texel = settings.map_size_texel();
+            let colors = Pass {
+                name: "light-colors",
+                target: Target::Colors { size_texel },
+                color: true,
+                cull: Cull::Nothing,
+                draws: Draws::Translucent,
+                ..map.clone()
+            };
+            let nearest = Pass {
+                name: "translucent-map",
+                target: Target::TranslucentMap { storage: combination.storage, size_texel },
+                color: false,
+                ..colors.clone()
+            };
+            vec![map, colors, nearest, lighting]
         }
         _ => vec![lighting],
+    }
+}
+
+/// The pass that draws one layer of a depth peel, 0 being the nearest.
+pub fn peel_pass(size_texel: u32, layer: u32) -> Pass {
+    Pass {
+        name: "peel",
+        per_light: true,
+        target: Target::Layer { size_texel },
+        clear_depth: DEPTH.clear(),
+        color: false,
+        cull: Cull::Nothing,
+        keeps: if layer == 0 { Keeps::Nearest } else { Keeps::Behind },
+        offset: PolygonOffset::default(),
+        draws: Draws::Casters,
     }
 }
 
@@ -107,7 +189,9 @@ pub fn lookup_bias_depth(settings: &Settings) -> f32 {
 
 fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
     match bias {
-        Bias::None | Bias::Matrix | Bias::ReceiverPlane => PolygonOffset::default(),
+        Bias::None | Bias::Matrix | Bias::ReceiverPlane | Bias::Midpoint | Bias::SecondDepth => {
+            PolygonOffset::default()
+        }
         // Every caster is carried on by 3/4 of a texel along both axes (`UMBRAGE_NEAR`), and the rasteriser's slope is the larger
         // of the two.
         Bias::Auto => PolygonOffset { constant: 0, slope: DEPTH.away() * 1.5 },
@@ -124,34 +208,63 @@ fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
 impl std::fmt::Display for Pass {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let target = match self.target {
-            Target::Map { storage, size_texel } => {
+            Target::Map { storage, size_texel } | Target::TranslucentMap { storage, size_texel } => {
                 let format = if storage == Storage::Auto {
                     "of the adapter's best depth format"
                 } else {
                     storage.row().id
                 };
-                format!("{size_texel}x{size_texel} {format}, the light's layer")
+                let of =
+                    if self.draws == Draws::Translucent { " of the translucent casters' array" } else { "" };
+                format!("{size_texel}x{size_texel} {format}, the light's layer{of}")
+            }
+            Target::Colors { size_texel } => {
+                format!("{size_texel}x{size_texel} rgba8unorm, the light's layer")
+            }
+            Target::Layer { size_texel } => {
+                format!("{size_texel}x{size_texel} {}, read by the next pass", Storage::Depth32Float.row().id)
             }
             Target::Picture => "the picture and its depth".to_owned(),
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
             Cull::BackOfClosed => "back faces of closed casters culled",
+            Cull::FrontOfClosed => "front faces of closed casters culled",
+            Cull::Nothing => "no faces culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
         let draws = match self.draws {
             Draws::Casters => "casters, positions only; cut-out casters with their texture",
+            Draws::Translucent => "translucent casters with base colour, texture and alpha",
             Draws::Surfaces => {
                 "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
             }
         };
-        let color = if self.color { "colour and depth" } else { "depth only" };
+        let is_colors = matches!(self.target, Target::Colors { .. });
+        let color = match self.color {
+            true if is_colors => "colours multiplied, depth of the light's map read only",
+            true => "colour and depth",
+            false => "depth only",
+        };
         writeln!(f, "{}{}", self.name, if self.per_light { " (one for each shadowed light)" } else { "" })?;
         writeln!(f, "  target  {target}")?;
-        writeln!(f, "  clear   depth {}", self.clear_depth)?;
+        match self.target {
+            Target::Colors { .. } => writeln!(f, "  clear   white")?,
+            _ => writeln!(f, "  clear   depth {}", self.clear_depth)?,
+        }
         write!(f, "  state   {color}, depth {compare}, {cull}")?;
         if self.offset != PolygonOffset::default() {
             write!(f, ", polygon offset slope {} constant {}", self.offset.slope, self.offset.constant)?;
+        }
+        match self.keeps {
+            Keeps::Nearest => {}
+            Keeps::Behind => write!(f, "\n  keeps   the nearest surface behind the layer before")?,
+            Keeps::Midpoint => {
+                write!(
+                    f,
+                    "\n  keeps   the middle between the layer before and the nearest surface behind it"
+                )?;
+            }
         }
         write!(f, "\n  draws   {draws}")
     }
@@ -169,6 +282,38 @@ mod tests {
             let passes = plan(&settings);
             assert_eq!(passes.last().map(|p| p.draws), Some(Draws::Surfaces), "{}", technique.id);
             assert_eq!(passes.len() > 1, technique.family == Family::Map, "{}", technique.id);
+        }
+    }
+
+    #[test]
+    fn coloured_light_takes_two_passes_more_and_says_so() {
+        let passes = plan(&Settings::new("colored", []).expect("valid"));
+        let draws: Vec<_> = passes.iter().map(|p| p.draws).collect();
+        assert_eq!(draws, [Draws::Casters, Draws::Translucent, Draws::Translucent, Draws::Surfaces]);
+        // What is tested against the map must be drawn with its offset.
+        assert!(passes[..3].iter().all(|p| p.offset == passes[0].offset && p.per_light));
+        let text = passes[1].to_string();
+        assert!(
+            text.contains("rgba8unorm") && text.contains("multiplied") && text.contains("clear   white"),
+            "{text}"
+        );
+        let cut = Settings::new("colored", [("translucent", "cut")]).expect("valid");
+        assert_eq!(plan(&cut), plan(&Settings::new("linear", []).expect("valid")));
+    }
+
+    #[test]
+    fn a_midpoint_map_is_peeled_first_and_a_second_depth_map_culls_fronts() {
+        let midpoint = plan(&Settings::new("midpoint", []).expect("valid"));
+        let kept: Vec<_> = midpoint.iter().map(|pass| (pass.keeps, pass.cull)).collect();
+        let none = Cull::Nothing;
+        assert_eq!(
+            kept,
+            [(Keeps::Nearest, none), (Keeps::Midpoint, none), (Keeps::Nearest, Cull::ByMaterial)]
+        );
+        let second = plan(&Settings::new("second-depth", []).expect("valid"));
+        assert_eq!((second.len(), second[0].cull), (2, Cull::FrontOfClosed));
+        for pass in [&midpoint[0], &midpoint[1], &second[0]] {
+            assert_eq!(pass.offset, PolygonOffset::default(), "no numbers at all");
         }
     }
 

@@ -58,6 +58,7 @@ pub const MODULES: &[Module] = &[
     module!("map/packed1", "four texels of distance in 8 bits of one channel", ["share"]),
     module!("map/packed2", "four texels of distance in 16 bits of two channels", ["share"]),
     module!("map/packed3", "four texels of distance in 24 bits of three channels", ["share"]),
+    module!("through", "the share of light that a translucent surface lets through", []),
     module!("taps", "what comparing four texels with a receiver gives", []),
     module!("compare/plain", "texels compared with the receiver's own depth", ["locate", "taps"]),
     module!("compare/plane", "texels compared with the receiver's plane at each", ["locate", "taps"]),
@@ -73,6 +74,14 @@ pub const MODULES: &[Module] = &[
         ["map", "compare", "kernel"]
     ),
     module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
+    module!("colored", "colours of four texels, and what they make of comparisons", ["view", "taps"]),
+    module!("filter/colored_nearest", "`filter/nearest` with coloured light", ["map", "compare", "colored"]),
+    module!("filter/colored_linear", "`filter/linear` with coloured light", ["map", "compare", "colored"]),
+    module!(
+        "filter/colored_kernel",
+        "`filter/kernel` with coloured light",
+        ["map", "compare", "kernel", "colored"]
+    ),
 ];
 
 /// A name that is no module.

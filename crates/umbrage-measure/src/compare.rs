@@ -14,7 +14,7 @@ use std::time::Instant;
 use umbrage_render::picture::encode_png;
 use umbrage_render::umbrage::core::Camera;
 use umbrage_render::umbrage::core::technique::Settings;
-use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View};
+use umbrage_render::{GivenVisibility, Gpu, Measure, RenderOptions, Renderer, View, deformed};
 use umbrage_scene::{Scene, SceneLight};
 use umbrage_truth::{Errors, Frame, Quality, Rays, flicker, flip};
 
@@ -145,7 +145,8 @@ pub fn compare(
     let steps = (scene.lights.len() * frames * (1 + plan.techniques.len())).max(1) as f32;
     progress_to(progress, "building the ray hierarchy", 0.0)?;
     let start = Instant::now();
-    let rays = Rays::new(scene)?;
+    let moved = deformed(gpu, scene, &plan.options)?;
+    let rays = Rays::new(&moved)?;
     let build_s = start.elapsed().as_secs_f64();
     let mut made = Comparison {
         truth: TruthSummary { samples: 1, ..TruthSummary::default() },
@@ -212,7 +213,7 @@ fn measure_group(
         let scene = Shot { gpu, scene: alone, camera, options: &plan.options };
         let reference = (frame == shown).then(|| scene.of_truth(&truth)).transpose()?;
         // One for all techniques: what costs time is the making.
-        let bare = (frame == shown).then(|| scene.renderer(&unshadowed()?, View::Final)).transpose()?;
+        let mut bare = (frame == shown).then(|| scene.renderer(&unshadowed()?, View::Final)).transpose()?;
         for (i, settings) in plan.techniques.iter().enumerate() {
             let label = format!("measuring {}", settings.technique.id);
             progress_to(progress, &label, (done + 1 + i) as f32)?;
@@ -227,7 +228,7 @@ fn measure_group(
                 let frames = [frame_of(last, &so_far.last_v), frame_of(&truth, &v.v)];
                 so_far.flickers.extend(flicker(&frames));
             }
-            if let (Some(reference), Some(bare)) = (&reference, &bare) {
+            if let (Some(reference), Some(bare)) = (&reference, &mut bare) {
                 made.rows.push(row(&scene, settings, &truth, &v.v, reference, bare, at, plan.frames)?);
             }
             so_far.last_v = v.v;
@@ -291,6 +292,8 @@ impl<'a> Shot<'a> {
             view,
             shown_light: 0,
             samples: 1,
+            // What a map costs is asked, not what it saves to have one.
+            reuse: false,
             given: None,
             ..self.options.clone()
         };
@@ -298,15 +301,14 @@ impl<'a> Shot<'a> {
     }
 
     fn visibility(&self, settings: &Settings, warnings: &mut Vec<String>) -> Result<Answer, MeasureError> {
-        let renderer = self.renderer(settings, View::Visibility)?;
+        let mut renderer = self.renderer(settings, View::Visibility)?;
         renderer.frame(Measure::Frame)?;
         for warning in renderer.warnings() {
             if !warnings.contains(warning) {
                 warnings.push(warning.clone());
             }
         }
-        let v = renderer.visibility()?.into_iter().map(Vec3::splat).collect();
-        Ok(Answer { v, views: renderer.views().to_vec() })
+        Ok(Answer { v: renderer.visibility_rgb()?, views: renderer.views().to_vec() })
     }
 
     /// The final picture with the truth's V.
@@ -319,7 +321,7 @@ impl<'a> Shot<'a> {
             given: Some(given),
             ..self.options.clone()
         };
-        let renderer = Renderer::new(self.gpu, self.scene, self.camera, options)?;
+        let mut renderer = Renderer::new(self.gpu, self.scene, self.camera, options)?;
         renderer.frame(Measure::Frame)?;
         Ok(renderer.picture()?)
     }
@@ -345,12 +347,12 @@ fn row(
     truth: &ViewTruth,
     v: &[Vec3],
     reference: &[u8],
-    bare: &Renderer<'_>,
+    bare: &mut Renderer<'_>,
     at: &At<'_>,
     frames: u32,
 ) -> Result<Row, MeasureError> {
-    let with = shot.renderer(settings, View::Final)?;
-    let cost = Cost::measure(&with, bare, settings, frames)?;
+    let mut with = shot.renderer(settings, View::Final)?;
+    let cost = Cost::measure(&mut with, bare, settings, frames)?;
     let picture = with.picture()?;
     let size = truth.size();
     let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);

@@ -214,7 +214,7 @@ fn drawn_surfaces(
 ) -> Result<Vec<Option<DrawnSurface>>, MeasureError> {
     let settings = Settings::new("unshadowed", []).map_err(|e| MeasureError::Write(e.to_string()))?;
     let options = RenderOptions { settings, view: View::Visibility, shown_light: 0, ..options.clone() };
-    let renderer = Renderer::new(gpu, scene, camera, options)?;
+    let mut renderer = Renderer::new(gpu, scene, camera, options)?;
     renderer.frame(Measure::Frame)?;
     Ok(renderer.surfaces()?)
 }

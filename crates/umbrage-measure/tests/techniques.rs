@@ -1,5 +1,10 @@
 //! Shadow maps against ray-traced truth, through the same comparison that users run.
 
+/// The scenes of the renderer's own tests.
+#[path = "../../umbrage-render/tests/common/scenes.rs"]
+#[allow(dead_code, reason = "its other scenes are for goldens")]
+mod scenes;
+
 use glam::{UVec2, Vec3};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, MutexGuard, OnceLock};
@@ -193,6 +198,66 @@ fn a_uniform_bias_leaks_more_than_a_slope_scaled_one() {
     assert!(uniform.errors.false_light > 1.5 * slope.errors.false_light);
 }
 
+/// Rows H11 and H12. Without any bias, round solids that a texel resolves have no acne. What remains elsewhere lies where a solid
+/// is thinner than its slope over a texel: at ridges between a lit side and an unlit one, and in blades. Fine maps leave less.
+#[test]
+fn solids_need_no_bias_but_where_they_are_thinner_than_a_texel() {
+    let Some(gpu) = gpu() else { return };
+    for (name, most) in [("torus", 0.002), ("columns", 0.002), ("contact", 0.02), ("knots", 0.0)] {
+        let scene = builtin(name);
+        let of = |technique, size| settings(technique, &[("map_size", size)]);
+        let techniques = vec![
+            settings("linear", &[("map_size", "512"), ("bias", "none")]),
+            of("midpoint", "512"),
+            of("midpoint", "4096"),
+            of("second-depth", "512"),
+            of("second-depth", "4096"),
+        ];
+        let found = measured(&gpu, &scene, techniques);
+        let acne: Vec<f64> = found.rows.iter().map(|row| row.errors.acne).collect();
+        let leak: Vec<f64> = found.rows.iter().map(|row| row.errors.leak).collect();
+        println!(
+            "{name}: acne of none, midpoint 512 and 4096, second 512 and 4096: {acne:.5?}; leak {leak:.5?}"
+        );
+        assert!(acne[0] > 0.05, "{name}: a bias must be needed: {}", acne[0]);
+        assert!(acne[1..].iter().all(|acne| *acne <= most), "{name}: {acne:?}");
+        assert!(acne[2] <= most / 4.0 && acne[4] <= most / 4.0, "{name}: {acne:?}");
+        assert!(leak[1..].iter().all(|leak| *leak < 0.002), "{name}: {leak:?}");
+        let cost = |row: usize| {
+            let cost = &found.rows[row].cost;
+            (cost.passes, cost.texels, cost.memory_bytes)
+        };
+        // A pass more, and a layer of 32-bit depth.
+        assert_eq!(cost(1), (2, 2 * 512 * 512, 2 * 4 * 512 * 512));
+        assert_eq!(cost(3), (1, 512 * 512, 4 * 512 * 512));
+    }
+}
+
+/// The closed-mesh check: who is not closed is named, and shadows itself; with midpoints it does not.
+#[test]
+fn a_solid_with_a_hole_is_named_and_shadows_itself() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("torus");
+    let mut holed = scene.clone();
+    let torus = holed.meshes.iter_mut().find(|m| m.name == "torus").expect("a torus");
+    torus.indices.truncate(torus.indices.len() - 3);
+    let size = ("map_size", "512");
+    let warned = |scene: &Scene, technique| {
+        let options = RenderOptions::new(settings(technique, &[size]));
+        let camera = &scene.cameras[0].camera;
+        umbrage_render::Renderer::new(&gpu, scene, camera, options).expect("a renderer").warnings().join("")
+    };
+    assert_eq!(warned(&scene, "second-depth"), "");
+    assert_eq!(warned(&holed, "midpoint"), "");
+    let warning = warned(&holed, "second-depth");
+    assert!(warning.contains("closed-mesh check") && warning.contains("`torus`"), "{warning}");
+    let found =
+        measured(&gpu, &holed, vec![settings("second-depth", &[size]), settings("midpoint", &[size])]);
+    let acne: Vec<f64> = found.rows.iter().map(|row| row.errors.acne).collect();
+    println!("acne of an open torus, second-depth and midpoint: {acne:.5?}");
+    assert!(acne[0] > 0.02 && acne[1] < 0.002, "{acne:?}");
+}
+
 /// A light with a shape: maps of today are hard, so their edges are too narrow, and the truth says so.
 #[test]
 fn hard_shadows_of_a_wide_light_are_too_narrow() {
@@ -261,4 +326,45 @@ fn it_stops_when_asked_and_counts_what_does_not_vary() {
             && row.cost.frame_ms > 0.0
     );
     assert!(last.into_inner() >= 50);
+}
+
+/// Row F4: light through panes. The technique that colours it must be far nearer to the truth than the one that cuts it, under every
+/// kind of light, and no worse where no pane is in the way.
+#[test]
+fn coloured_light_is_near_the_truth() {
+    let Some(gpu) = gpu() else { return };
+    let panes = scenes::panes();
+    let spot = panes.lights[0].light;
+    let point = Light { kind: LightKind::Point, ..spot };
+    for (name, light) in [("spot", spot), ("sun", sun_of(&panes)), ("point", point)] {
+        let scene = with_light(panes.clone(), light);
+        let techniques = vec![
+            settings("linear", &[MAP]),
+            settings("colored", &[MAP]),
+            settings("colored", &[MAP, ("storage", "packed3"), ("filter", "pcf")]),
+        ];
+        let found = measured(&gpu, &scene, techniques);
+        let receivers = found.views[0].receivers;
+        for row in &found.rows {
+            println!(
+                "{name} {} {}: rmse {:.4}, {} acne, {} leak of {} sure, {} passes, {} bytes",
+                row.technique,
+                row.params["filter"],
+                row.errors.rmse,
+                row.errors.acne_pixels,
+                row.errors.leak_pixels,
+                pixels(row, 1.0, receivers),
+                row.cost.passes,
+                row.cost.memory_bytes
+            );
+        }
+        let [linear, colored, packed] = found.rows.as_slice() else { panic!("three rows") };
+        for row in [colored, packed] {
+            assert!(3.0 * row.errors.rmse < linear.errors.rmse, "{name}: {}", row.errors.rmse);
+            assert!(row.errors.acne_pixels <= linear.errors.acne_pixels, "{name}");
+            assert!(row.errors.leak_pixels <= linear.errors.leak_pixels, "{name}");
+            assert_eq!(row.cost.passes, 3 * linear.cost.passes, "{name}");
+        }
+        assert_eq!(colored.cost.memory_bytes, 3 * linear.cost.memory_bytes, "{name}");
+    }
 }

@@ -3,12 +3,14 @@
 use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
-use glam::{Vec3, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use umbrage::core::fit::ShadowView;
 use umbrage::core::idle::flat_caster_is_idle;
+use umbrage::core::plan::Cull;
+use umbrage::core::technique::{Bias, Settings};
 use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
-use umbrage_scene::{Scene, is_closed, plane_of};
+use umbrage_scene::{Mesh, Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
 #[derive(Clone, Debug)]
@@ -17,8 +19,8 @@ pub struct Batch {
     pub mesh: usize,
     /// Pipeline variant.
     pub variant: Variant,
-    /// A closed solid wholly in front of the view, so that its back faces need not be drawn. Only set for casters.
-    pub back_hidden: bool,
+    /// A closed solid of which the pass leaves out one side, as its `Cull` says. Only set for casters.
+    pub one_sided: bool,
     /// Instances: first and past the last, in the buffer of all views.
     pub instances: std::ops::Range<u32>,
 }
@@ -27,24 +29,58 @@ pub struct Batch {
 #[derive(Clone, Copy, Debug)]
 struct Item {
     instance: usize,
+    mesh: usize,
+    material: usize,
+    world_from_object: Mat4,
     variant: Variant,
     bounds_world: Aabb,
     closed: bool,
+    /// Has it holes that light passes?
+    cut_out: bool,
     /// The plane that it lies in, if it is flat.
     plane_world: Option<Vec4>,
 }
 
 /// All instances of a scene in drawing order.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Items {
     items: Vec<Item>,
+    /// Where each instance stands in `items`.
+    at_of_instance: Vec<usize>,
+    shapes: Vec<Shape>,
+    reach_m: f32,
 }
 
 /// What the shape of a mesh allows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shape {
+    bounds_object: Aabb,
     closed: bool,
     plane_object: Option<Vec4>,
+}
+
+impl Shape {
+    fn of(mesh: &Mesh) -> Self {
+        let plane_object = plane_of(mesh);
+        let closed = plane_object.is_none() && is_closed(mesh);
+        Self { bounds_object: mesh.bounds, closed, plane_object }
+    }
+}
+
+impl Item {
+    /// Moves it to `world_from_object`. Vertices may be moved on by `reach_m`; what is moved is neither flat nor closed for
+    /// certain.
+    fn place(&mut self, world_from_object: Mat4, shape: &Shape, reach_m: f32) {
+        self.world_from_object = world_from_object;
+        self.variant.mirrored = world_from_object.determinant() < 0.0;
+        let bounds = shape.bounds_object.transformed(&world_from_object);
+        self.bounds_world = Aabb { min: bounds.min - reach_m, max: bounds.max + reach_m };
+        self.closed = shape.closed && reach_m <= 0.0;
+        // Planes go by the inverse transpose.
+        let plane_object = shape.plane_object.filter(|_| reach_m <= 0.0);
+        let plane_world = plane_object.map(|plane| world_from_object.inverse().transpose() * plane);
+        self.plane_world = plane_world.map(|p| p / p.truncate().length()).filter(|p| p.is_finite());
+    }
 }
 
 /// The shapes of all meshes; all cores share the work.
@@ -56,8 +92,7 @@ fn shapes(scene: &Scene) -> Vec<Shape> {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(mesh) = scene.meshes.get(index) else { return found };
-            let plane_object = plane_of(mesh);
-            found.push((index, Shape { closed: plane_object.is_none() && is_closed(mesh), plane_object }));
+            found.push((index, Shape::of(mesh)));
         }
     };
     let mut all = vec![Shape::default(); scene.meshes.len()];
@@ -75,31 +110,59 @@ impl Items {
     /// flat nor closed for certain.
     pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry], reach_m: f32) -> Self {
         let shapes = shapes(scene);
-        let mut items: Vec<Item> = (0..scene.instances.len())
-            .map(|instance| {
-                let placed = &scene.instances[instance];
-                let mesh = &scene.meshes[placed.mesh];
-                let variant = Variant {
-                    full: geometry.meshes[placed.mesh].full,
-                    mirrored: placed.world_from_object.determinant() < 0.0,
-                    ..materials[mesh.material].variant
-                };
-                let mut bounds_world = mesh.bounds.transformed(&placed.world_from_object);
-                bounds_world = Aabb { min: bounds_world.min - reach_m, max: bounds_world.max + reach_m };
-                let shape = if reach_m > 0.0 { Shape::default() } else { shapes[placed.mesh] };
-                let Shape { closed, plane_object } = shape;
-                // Planes go by the inverse transpose.
-                let plane_world =
-                    plane_object.map(|plane| placed.world_from_object.inverse().transpose() * plane);
-                let plane_world = plane_world.map(|p| p / p.truncate().length()).filter(|p| p.is_finite());
-                Item { instance, variant, bounds_world, closed, plane_world }
-            })
-            .collect();
-        items.sort_by_key(|item| {
-            let mesh = scene.instances[item.instance].mesh;
-            (item.variant, scene.meshes[mesh].material, mesh, item.instance)
-        });
-        Self { items }
+        let item = |(instance, placed): (usize, &umbrage_scene::Instance)| {
+            let material = scene.meshes[placed.mesh].material;
+            let mut item = Item {
+                instance,
+                mesh: placed.mesh,
+                material,
+                world_from_object: placed.world_from_object,
+                variant: Variant { full: geometry.meshes[placed.mesh].full, ..materials[material].variant },
+                bounds_world: Aabb::EMPTY,
+                closed: false,
+                cut_out: geometry.meshes[placed.mesh].uv_alpha_offset.is_some(),
+                plane_world: None,
+            };
+            item.place(placed.world_from_object, &shapes[placed.mesh], reach_m);
+            item
+        };
+        let items = scene.instances.iter().enumerate().map(item).collect();
+        let mut items = Self { items, at_of_instance: Vec::new(), shapes, reach_m };
+        items.sort();
+        items
+    }
+
+    fn sort(&mut self) {
+        self.items.sort_by_key(|item| (item.variant, item.material, item.mesh, item.instance));
+        self.at_of_instance = vec![0; self.items.len()];
+        for (at, item) in self.items.iter().enumerate() {
+            self.at_of_instance[item.instance] = at;
+        }
+    }
+
+    /// Moves an instance; nothing where there is none of that number.
+    pub fn place(&mut self, instance: usize, world_from_object: Mat4) {
+        let Some(item) = self.at_of_instance.get(instance).and_then(|at| self.items.get_mut(*at)) else {
+            return;
+        };
+        let was_mirrored = item.variant.mirrored;
+        item.place(world_from_object, &self.shapes[item.mesh], self.reach_m);
+        if item.variant.mirrored != was_mirrored {
+            self.sort();
+        }
+    }
+
+    /// Gives a mesh another shape.
+    pub fn reshape(&mut self, index: usize, mesh: &Mesh) {
+        self.shapes[index] = Shape::of(mesh);
+        for item in self.items.iter_mut().filter(|item| item.mesh == index) {
+            item.place(item.world_from_object, &self.shapes[index], self.reach_m);
+        }
+    }
+
+    /// How many instances there are.
+    pub fn len(&self) -> usize {
+        self.items.len()
     }
 
     /// Boxes of all instances in world space.
@@ -108,35 +171,30 @@ impl Items {
     }
 
     /// The solid surfaces that a view may see; their instances are appended to `instances`.
-    pub fn solid(&self, scene: &Scene, frustum: &Frustum, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
+    pub fn solid(&self, frustum: &Frustum, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
         let seen = self.items.iter().filter(|i| !i.variant.blend && frustum.may_see(&i.bounds_world));
-        batches(scene, seen.map(|item| (item, false)), instances)
+        batches(seen.map(|item| (item, false)), instances)
     }
 
     /// The surfaces mixed by alpha that a view may see, far ones first.
-    pub fn blended(
-        &self,
-        scene: &Scene,
-        frustum: &Frustum,
-        eye: Vec3,
-        instances: &mut Vec<GpuInstance>,
-    ) -> Vec<Batch> {
+    pub fn blended(&self, frustum: &Frustum, eye: Vec3, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
         let mut seen: Vec<&Item> =
             self.items.iter().filter(|i| i.variant.blend && frustum.may_see(&i.bounds_world)).collect();
         let distance = |item: &Item| item.bounds_world.center().distance_squared(eye);
         seen.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-        batches(scene, seen.into_iter().map(|item| (item, false)), instances)
+        batches(seen.into_iter().map(|item| (item, false)), instances)
     }
 
-    /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing.
+    /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing. `cull` is the
+    /// pass's.
     pub fn casters(
         &self,
-        scene: &Scene,
         (light, view): (&Light, &ShadowView),
         all: bool,
+        cull: Cull,
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<Batch> {
-        let frustum = view.frustum();
+        let frustum = view.caster_frustum(light);
         let in_front = |bounds: &Aabb| {
             bounds.corners().iter().all(|p| -view.light_from_world.transform_point3(*p).z > view.near_m)
         };
@@ -153,39 +211,72 @@ impl Items {
             }
             _ => true,
         };
-        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && !is_idle(item));
+        // What shadows nothing may still be what lies behind the nearest surface.
+        let layered = cull == Cull::Nothing;
+        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && (layered || !is_idle(item)));
+        let one_sided = |item: &Item| match cull {
+            Cull::BackOfClosed => item.closed && in_front(&item.bounds_world),
+            // What enters through a hole may meet the inside of a back face. Where the near plane, or the light itself, is inside
+            // of a solid, the way out is still through its back faces.
+            Cull::FrontOfClosed => item.closed && !item.cut_out,
+            Cull::Nothing | Cull::ByMaterial => false,
+        };
         let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
-        batches(scene, seen.map(|item| (item, item.closed && in_front(&item.bounds_world))), instances)
+        batches(seen.map(|item| (item, one_sided(item))), instances)
     }
 }
 
 /// Joins neighbours of the same mesh and state.
 fn batches<'a>(
-    scene: &Scene,
     items: impl Iterator<Item = (&'a Item, bool)>,
     instances: &mut Vec<GpuInstance>,
 ) -> Vec<Batch> {
     let mut batches: Vec<Batch> = Vec::new();
-    for (item, back_hidden) in items {
-        let placed = &scene.instances[item.instance];
+    for (item, one_sided) in items {
         let at = instances.len() as u32;
-        instances.push(GpuInstance::new(&placed.world_from_object));
+        instances.push(GpuInstance::new(&item.world_from_object));
         match batches.last_mut() {
             Some(last)
-                if (last.mesh, last.variant, last.back_hidden)
-                    == (placed.mesh, item.variant, back_hidden) =>
+                if (last.mesh, last.variant, last.one_sided) == (item.mesh, item.variant, one_sided) =>
             {
                 last.instances.end = at + 1;
             }
             _ => batches.push(Batch {
-                mesh: placed.mesh,
+                mesh: item.mesh,
                 variant: item.variant,
-                back_hidden,
+                one_sided,
                 instances: at..at + 1,
             }),
         }
     }
     batches
+}
+
+/// The closed-mesh check of second-depth maps: what a user must know of casters that have no way out. `casters` are the draws of
+/// each view.
+pub fn open_casters(names: &[String], settings: &Settings, casters: &[Vec<Batch>]) -> Option<String> {
+    const NAMED: usize = 8;
+    if settings.combination.is_none_or(|c| c.bias != Bias::SecondDepth) {
+        return None;
+    }
+    let mut meshes: Vec<usize> = casters.iter().flatten().filter(|b| !b.one_sided).map(|b| b.mesh).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    let name = |mesh: &usize| match names[*mesh].as_str() {
+        "" => format!("mesh {mesh}"),
+        name => format!("`{name}`"),
+    };
+    let named: Vec<String> = meshes.iter().take(NAMED).map(name).collect();
+    let more =
+        if meshes.len() > NAMED { format!(" and {} more", meshes.len() - NAMED) } else { String::new() };
+    (!meshes.is_empty()).then(|| {
+        format!(
+            "closed-mesh check: second-depth maps hold back faces only, and these casters are not closed solids (open edges, \
+             faces turned against each other, cut out, or deformed): {}{more}; both of their sides are drawn, so they may \
+             shadow themselves; use bias=midpoint or bias=auto",
+            named.join(", ")
+        )
+    })
 }
 
 /// What a list of draws asks of the GPU, counted on the CPU.

@@ -47,6 +47,19 @@ pub enum RenderError {
     /// The view shows a light that is not there or has no map.
     #[error("{0}")]
     View(String),
+    /// A WGSL function of the user's own that cannot be used.
+    #[error("the {what} function cannot be used: {reason}; it must be `{wanted}`")]
+    Wgsl {
+        /// Which.
+        what: &'static str,
+        /// How it is called.
+        wanted: &'static str,
+        /// Where and why, one line.
+        reason: String,
+    },
+    /// What a renderer was told to change cannot be changed so.
+    #[error("{0}")]
+    Change(String),
     /// The GPU ran out of memory, or refused a command.
     #[error("the GPU refused the frame: {0}")]
     Gpu(String),

@@ -4,11 +4,14 @@ use crate::draw_list::{Batch, Work};
 use crate::options::View;
 use crate::pipelines::MeshTarget;
 use crate::readback;
-use crate::renderer::{Renderer, Shadows};
+use crate::renderer::Renderer;
+use crate::threaded::{MapSchedule, locked};
 use crate::timing::{Measure, Queries, Statistics};
 use crate::{RenderError, RenderOptions};
+use glam::Vec3;
+use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Instant;
-use umbrage::caster::GpuCasterView;
 use umbrage::core::DEPTH;
 
 /// What a pass did.
@@ -27,32 +30,83 @@ pub struct PassReport {
 /// What a frame did.
 #[derive(Clone, Debug)]
 pub struct FrameReport {
-    /// Milliseconds from the first command to the GPU's word that all is done.
+    /// Milliseconds from the first command to the GPU's word that all is done. Fits, culling and uploads for what moved are
+    /// in it.
     pub frame_ms: f64,
-    /// In the order in which they ran.
+    /// In the order in which they ran. A map that is reused has no pass.
     pub passes: Vec<PassReport>,
+    /// Maps that were drawn for this frame; by a thread: since the frame before.
+    pub maps_drawn: u64,
+    /// Maps that were looked up as they were.
+    pub maps_reused: u64,
+    /// How many frames ago the world was last as the maps show it. 0 unless a [`crate::MapSchedule`] lets them lag.
+    pub maps_age_frames: u64,
+    /// The same in milliseconds, from frame start to frame start.
+    pub maps_age_ms: f64,
+}
+
+/// When each state of the world was last that of a frame: version, number of the frame, its start.
+#[derive(Debug, Default)]
+pub(crate) struct Ages {
+    frames: u64,
+    last_seen: VecDeque<(u64, u64, Instant)>,
+}
+
+impl Ages {
+    /// A frame begins, in this state of the world.
+    fn begin(&mut self, version: u64, start: Instant) {
+        self.frames += 1;
+        self.last_seen.retain(|seen| seen.0 != version);
+        self.last_seen.push_back((version, self.frames, start));
+    }
+
+    /// Age of what shows `version`, in frames and milliseconds. States before it are forgotten. What no frame was in (it was
+    /// drawn before the first) is as old as the oldest known.
+    fn of(&mut self, version: u64, start: Instant) -> (u64, f64) {
+        while self.last_seen.len() > 1 && self.last_seen.front().is_some_and(|seen| seen.0 < version) {
+            self.last_seen.pop_front();
+        }
+        self.last_seen.front().map_or((0, 0.0), |(_, frame, at)| {
+            (self.frames - frame, start.saturating_duration_since(*at).as_secs_f64() * 1e3)
+        })
+    }
 }
 
 impl Renderer<'_> {
-    /// Draws one frame, waits for it, and measures what was asked for, where the adapter can.
+    /// Draws one frame, waits for it, and measures what was asked for, where the adapter can. Maps that hold what they
+    /// should are looked up as they are.
     ///
     /// # Errors
-    /// [`RenderError::Gpu`] when the device refuses a command or is lost.
-    pub fn frame(&self, measure: Measure) -> Result<FrameReport, RenderError> {
-        let names = self.pass_names();
-        let queries = Queries::new(self.gpu, names.len() as u32, measure);
+    /// [`RenderError::Gpu`] when the device refuses a command or is lost; [`RenderError::View`] and [`RenderError::Shadow`]
+    /// when what was changed leaves nothing to show or no room.
+    pub fn frame(&mut self, measure: Measure) -> Result<FrameReport, RenderError> {
         let start = Instant::now();
+        let (index, by_thread) = match &self.thread {
+            Some(thread) => thread.exchange(&self.world)?,
+            None => (0, 0),
+        };
+        let set = Arc::clone(&self.sets[index]);
+        let mut set = locked(&set);
+        let drawn = if self.are_maps_due(start) {
+            self.maker.refresh(&mut set, &self.world)?;
+            set.stale(!self.options.reuse)
+        } else {
+            Vec::new()
+        };
+        self.tell(index, &set)?;
+
+        let names = self.pass_names(&drawn);
+        let queries = Queries::new(self.gpu, names.len() as u32, measure);
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         let mut pass = 0;
         let mut work = Vec::with_capacity(names.len());
-        // 1. Each light's map.
-        if let Some(shadows) = &self.shadows {
-            for (layer, casters) in shadows.casters.iter().enumerate() {
-                self.record_map(&mut encoder, shadows, layer, &queries, pass);
-                work.push(self.work_of(casters));
-                pass += 1;
-            }
+        // 1. Each light's map that does not hold what it should.
+        for layer in &drawn {
+            self.maker.record(&mut encoder, &mut set, *layer, Some((&queries, pass)));
+            let of_map = self.maker.work(&set, *layer);
+            pass += of_map.len() as u32;
+            work.extend(of_map);
         }
         // 2. Surfaces, into the G-buffer or lit at once.
         self.record_surfaces(&mut encoder, &queries, pass);
@@ -70,8 +124,13 @@ impl Renderer<'_> {
             work.push(self.work_of(&self.blended));
         }
         queries.resolve(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
-        readback::wait(self.gpu)?;
+        let submitted = self.gpu.queue.submit([encoder.finish()]);
+        if let Some(thread) = &self.thread {
+            thread.release();
+        }
+        let (count, version) = (set.count() as u64, set.version.unwrap_or(self.world.version));
+        drop(set);
+        readback::wait_for(self.gpu, Some(submitted))?;
         let frame_ms = start.elapsed().as_secs_f64() * 1e3;
         let measured = queries.read(self.gpu);
         let passes = names
@@ -80,34 +139,70 @@ impl Renderer<'_> {
             .zip(measured)
             .map(|((name, work), (gpu_ms, statistics))| PassReport { name, work, gpu_ms, statistics })
             .collect();
-        Ok(FrameReport { frame_ms, passes })
+        let maps_drawn = if self.thread.is_some() { by_thread } else { drawn.len() as u64 };
+        self.ages.begin(self.world.version, start);
+        let (maps_age_frames, maps_age_ms) = self.ages.of(version, start);
+        let maps_reused = count.saturating_sub(maps_drawn);
+        Ok(FrameReport { frame_ms, passes, maps_drawn, maps_reused, maps_age_frames, maps_age_ms })
     }
 
-    /// The picture: RGBA, 8 bits each, rows from the top. V is grey.
+    /// Is it the frame's to draw maps, and time to?
+    fn are_maps_due(&mut self, now: Instant) -> bool {
+        let due = match self.schedule {
+            MapSchedule::EachFrame => true,
+            MapSchedule::Every(interval) => self.drawn_at.is_none_or(|at| now >= at + interval),
+            MapSchedule::Threaded(_) => false,
+        };
+        if due {
+            self.drawn_at = Some(now);
+        }
+        due
+    }
+
+    /// The picture: RGBA, 8 bits each, rows from the top. V is grey, or in the colours of the light that arrives.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] when the device is lost.
     pub fn picture(&self) -> Result<Vec<u8>, RenderError> {
+        if self.options.view.is_density() {
+            return self.density_picture();
+        }
         if self.options.view != View::Visibility {
             return readback::texture(self.gpu, &self.targets.output);
         }
-        let grey = |v: &f32| {
-            let level = (v.clamp(0.0, 1.0) * 255.0).round() as u8;
-            [level, level, level, 255]
-        };
-        Ok(self.visibility()?.iter().flat_map(grey).collect())
+        let level = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let pixel = |v: &Vec3| [level(v.x), level(v.y), level(v.z), 255];
+        Ok(self.visibility_rgb()?.iter().flat_map(pixel).collect())
     }
 
-    /// V of the shown light, unrounded, rows from the top. Only after a frame of [`View::Visibility`].
+    /// V of the shown light, unrounded, rows from the top: of coloured light the mean of red, green and blue. Only after a
+    /// frame of [`View::Visibility`].
     ///
     /// # Errors
     /// [`RenderError::View`] for another view; [`RenderError::Gpu`] when the device is lost.
     pub fn visibility(&self) -> Result<Vec<f32>, RenderError> {
+        // Exact for equal numbers, which a sum of three is not.
+        let mean = |v: Vec3| if v.x == v.y && v.y == v.z { v.x } else { v.element_sum() / 3.0 };
+        Ok(self.visibility_rgb()?.into_iter().map(mean).collect())
+    }
+
+    /// V of the shown light in red, green and blue, unrounded, rows from the top; three equal numbers where the technique does
+    /// not colour light. Only after a frame of [`View::Visibility`].
+    ///
+    /// # Errors
+    /// [`RenderError::View`] for another view; [`RenderError::Gpu`] when the device is lost.
+    pub fn visibility_rgb(&self) -> Result<Vec<Vec3>, RenderError> {
         if self.options.view != View::Visibility {
             return Err(RenderError::View("only the view `visibility` holds V".into()));
         }
         let bytes = readback::texture(self.gpu, &self.targets.output)?;
-        Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+        let number = |b: &[u8]| f32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        Ok(if self.options.colors_light() {
+            let color = |b: &[u8]| Vec3::new(number(b), number(&b[4..]), number(&b[8..]));
+            bytes.chunks_exact(16).map(color).collect()
+        } else {
+            bytes.chunks_exact(4).map(|b| Vec3::splat(number(b))).collect()
+        })
     }
 
     /// What the picture was asked to be.
@@ -122,6 +217,7 @@ impl Renderer<'_> {
             View::Final | View::Light => {
                 wgpu::Color { r: background.x, g: background.y, b: background.z, a: 1.0 }
             }
+            view if view.is_density() => wgpu::Color::TRANSPARENT,
             _ => wgpu::Color::WHITE,
         }
     }
@@ -130,11 +226,11 @@ impl Renderer<'_> {
         !self.blended.is_empty() && matches!(self.options.view, View::Final | View::Light)
     }
 
-    fn pass_names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        if let Some(shadows) = &self.shadows {
-            names.extend((0..shadows.casters.len()).map(|view| format!("{} {view}", shadows.pass.name)));
-        }
+    fn pass_names(&self, drawn: &[usize]) -> Vec<String> {
+        let of_map = self.maker.pass_names();
+        let of_view =
+            |view: &usize| of_map.iter().map(move |name| format!("{name} {view}")).collect::<Vec<_>>();
+        let mut names: Vec<String> = drawn.iter().flat_map(of_view).collect();
         names.push(if self.screen.is_some() { "surfaces" } else { "lit surfaces" }.to_owned());
         if self.screen.is_some() {
             names.push(match self.options.view {
@@ -146,52 +242,6 @@ impl Renderer<'_> {
             names.push("blended".to_owned());
         }
         names
-    }
-
-    fn record_map(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        shadows: &Shadows,
-        layer: usize,
-        queries: &Queries,
-        pass: u32,
-    ) {
-        let stamps = queries.stamps(pass);
-        umbrage::record_caster_pass(
-            encoder,
-            &shadows.maps,
-            layer as u32,
-            &shadows.pass,
-            stamps,
-            |recorded| {
-                queries.count(recorded, pass, |recorded| {
-                    recorded.set_bind_group(0, &shadows.view_group, &[layer as u32 * GpuCasterView::STRIDE]);
-                    recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-                    recorded.set_vertex_buffer(1, self.instances.slice(..));
-                    for batch in &shadows.casters[layer] {
-                        self.draw_caster(recorded, shadows, batch);
-                    }
-                });
-            },
-        );
-    }
-
-    fn draw_caster(&self, recorded: &mut wgpu::RenderPass<'_>, shadows: &Shadows, batch: &Batch) {
-        let mesh = &self.geometry.meshes[batch.mesh];
-        let cut_out = &self.materials[self.material_of_mesh[batch.mesh]].caster;
-        if let (Some(group), Some(offset)) = (cut_out, mesh.uv_alpha_offset) {
-            recorded.set_pipeline(&shadows.pipelines.cut_out);
-            recorded.set_bind_group(1, group, &[]);
-            recorded.set_vertex_buffer(2, self.geometry.uv_alpha.slice(offset..));
-        } else {
-            recorded.set_pipeline(match (batch.back_hidden, batch.variant.mirrored) {
-                (true, false) => &shadows.pipelines.closed,
-                (true, true) => &shadows.pipelines.closed_mirrored,
-                (false, _) => &shadows.pipelines.open,
-            });
-        }
-        recorded.set_vertex_buffer(0, self.geometry.positions.slice(mesh.position_offset..));
-        recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
     }
 
     fn record_surfaces(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
@@ -228,6 +278,7 @@ impl Renderer<'_> {
 
     fn record_screen(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
         let (Some(pipeline), Some(gbuffer)) = (&self.screen, &self.gbuffer_group) else { return };
+        let Some(frame_group) = &self.frame_group else { return };
         let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("screen"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -251,7 +302,7 @@ impl Renderer<'_> {
         });
         queries.count(&mut recorded, pass, |recorded| {
             recorded.set_pipeline(pipeline);
-            recorded.set_bind_group(0, &self.frame_group, &[]);
+            recorded.set_bind_group(0, frame_group, &[]);
             recorded.set_bind_group(1, gbuffer, &[]);
             recorded.draw(0..3, 0..1);
         });
@@ -280,9 +331,10 @@ impl Renderer<'_> {
     }
 
     fn draw_meshes(&self, recorded: &mut wgpu::RenderPass<'_>, batches: &[Batch], target: MeshTarget) {
-        recorded.set_bind_group(0, &self.frame_group, &[]);
+        let Some(frame_group) = &self.frame_group else { return };
+        recorded.set_bind_group(0, frame_group, &[]);
         recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
-        recorded.set_vertex_buffer(1, self.instances.slice(..));
+        recorded.set_vertex_buffer(1, self.instances.buffer.slice(..));
         for batch in batches {
             let mesh = &self.geometry.meshes[batch.mesh];
             let Some(pipeline) = self.mesh_pipelines.get(target, batch.variant) else { continue };

@@ -47,6 +47,8 @@ pub fn adapters() -> Vec<wgpu::Adapter> {
 /// Features that are used where an adapter has them, and only to measure.
 const MEASURING: wgpu::Features =
     wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::PIPELINE_STATISTICS_QUERY);
+/// Used where the adapter has it; casters that a map's near plane would cut then still throw their whole shadow.
+const UNCLIPPED: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL;
 
 /// One line; out of memory with the way out of it.
 fn described(error: &wgpu::Error) -> String {
@@ -85,11 +87,12 @@ impl Gpu {
         let limits = wgpu::Limits {
             max_texture_dimension_2d: most.max_texture_dimension_2d,
             max_buffer_size: most.max_buffer_size,
+            max_texture_array_layers: most.max_texture_array_layers,
             ..wgpu::Limits::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("umbrage"),
-            required_features: adapter.features() & MEASURING,
+            required_features: adapter.features() & (MEASURING | UNCLIPPED),
             required_limits: limits,
             ..Default::default()
         }))

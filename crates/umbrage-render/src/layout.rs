@@ -81,7 +81,7 @@ pub struct GpuMaterial {
 
 /// Rows of an affine `world_from_object`, as the vertex shaders read an instance.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuInstance {
     pub rows: [Vec4; 3],
 }

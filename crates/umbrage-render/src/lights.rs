@@ -10,10 +10,10 @@ use umbrage::core::lookup::{TextureOrigin, texture_from_world};
 use umbrage::core::projection::perspective;
 use umbrage::core::technique::{Projection, Settings, Storage};
 use umbrage::core::{Aabb, DEPTH, Light, LightKind};
-use umbrage_scene::Scene;
+use umbrage_scene::SceneLight;
 
 /// The lights of a frame.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Lights {
     /// One for each light.
     pub lights: Vec<GpuLight>,
@@ -82,7 +82,7 @@ impl Lights {
     /// # Errors
     /// A light whose numbers cannot be used.
     pub fn new(
-        scene: &Scene,
+        scene_lights: &[SceneLight],
         settings: &Settings,
         storage: Storage,
         exposure: f32,
@@ -98,12 +98,12 @@ impl Lights {
             slides: Vec::new(),
             warnings: Vec::new(),
         };
-        if scene.lights.len() > MAX_LIGHTS {
-            let left_out = scene.lights.len() - MAX_LIGHTS;
+        if scene_lights.len() > MAX_LIGHTS {
+            let left_out = scene_lights.len() - MAX_LIGHTS;
             made.warnings.push(format!("{left_out} lights are left out; a picture has {MAX_LIGHTS} at most"));
         }
         let size_texel = settings.map_size_texel();
-        for (index, placed) in scene.lights.iter().take(MAX_LIGHTS).enumerate() {
+        for (index, placed) in scene_lights.iter().take(MAX_LIGHTS).enumerate() {
             let light = &placed.light;
             light.check()?;
             let first = made.views.len();
@@ -155,6 +155,27 @@ impl Lights {
             made.views_of_light.push(views);
         }
         Ok(made)
+    }
+
+    /// The lights as they are now over the views as they were: a map that is older than the frame is looked up where it
+    /// was drawn, while its light shines from where it is.
+    pub fn relit(&self, scene_lights: &[SceneLight], exposure: f32) -> Vec<GpuLight> {
+        let relit = |(made, placed): (&GpuLight, &SceneLight)| {
+            let now = gpu_light(&placed.light, exposure, None, 0, None);
+            let is_spot = made.kind == SPOT;
+            GpuLight {
+                position: now.position,
+                direction: now.direction,
+                range_m: now.range_m,
+                color: now.color,
+                cone_scale: now.cone_scale,
+                cone_offset: now.cone_offset,
+                cos_outer: now.cos_outer,
+                slide_from_world: if is_spot { now.slide_from_world } else { made.slide_from_world },
+                ..*made
+            }
+        };
+        self.lights.iter().zip(scene_lights).map(relit).collect()
     }
 }
 

@@ -21,11 +21,15 @@ pub enum View {
     Projected,
     /// The channels of a map that is a colour target.
     Channels,
+    /// Texels of the light's map in a pixel, over the dimmed scene, with a legend and a histogram.
+    Density,
+    /// The same numbers in each texel of the map.
+    DensityLight,
 }
 
 impl View {
     /// All views.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Final,
         Self::Visibility,
         Self::Light,
@@ -33,6 +37,8 @@ impl View {
         Self::Distance,
         Self::Projected,
         Self::Channels,
+        Self::Density,
+        Self::DensityLight,
     ];
 
     /// Name on the command line.
@@ -45,6 +51,8 @@ impl View {
             Self::Distance => "distance",
             Self::Projected => "projected",
             Self::Channels => "channels",
+            Self::Density => "density",
+            Self::DensityLight => "density-light",
         }
     }
 
@@ -58,12 +66,21 @@ impl View {
             Self::Distance => "each surface's distance from the light: near black, far white",
             Self::Projected => "the light's map projected on the scene",
             Self::Channels => "the channels of a map that is a colour target (storage r32f or packed)",
+            Self::Density => "shadow-map texels per pixel: blue too few, red to spare; with a histogram",
+            Self::DensityLight => {
+                "the same from the light's eye, in its map; grey where the eye does not look"
+            }
         }
     }
 
     /// Does it show what the map holds?
     pub fn shows_map(self) -> bool {
-        matches!(self, Self::Depth | Self::Projected | Self::Channels)
+        matches!(self, Self::Depth | Self::Projected | Self::Channels | Self::DensityLight)
+    }
+
+    /// Does it hold texels per pixel?
+    pub fn is_density(self) -> bool {
+        matches!(self, Self::Density | Self::DensityLight)
     }
 
     /// Does it need the map itself, and so a light that has one?
@@ -98,12 +115,18 @@ pub struct RenderOptions {
     /// Draw every caster into the maps, also those that can be shown to shadow nothing. Costs time and changes no
     /// picture but those of the maps themselves, which always have them all. Default false.
     pub all_casters: bool,
+    /// Draw a map again only when its light, its view or a caster in its view has moved. Changes no picture; a frame then
+    /// costs what moved, not what there is, so whoever measures what maps cost sets false. Default true.
+    pub reuse: bool,
+    /// Busy work on the CPU before each map that is drawn, milliseconds: stands for an application's own culling and
+    /// skinning when threads are measured. 0 or more, default 0.
+    pub map_load_ms: f32,
     /// A WGSL function that moves vertices, in maps and pictures alike: `fn umbrage_deform(p_world: vec3f, p_object: vec3f,
     /// time_s: f32) -> vec3f`. Default none.
     pub deform: Option<Arc<str>>,
     /// How far it may move them, metres: boxes grow by it. Default 0.
     pub deform_reach_m: f32,
-    /// What it is told of time, seconds. Default 0.
+    /// What it is told of time until [`crate::Renderer::set_time`] says otherwise, seconds. Default 0.
     pub time_s: f32,
     /// Weights of the filter `kernel` as a WGSL function: `fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) ->
     /// vec4f`, of four texels whose centres lie so far from the receiver. Default none: a bell.
@@ -122,6 +145,11 @@ pub struct GivenVisibility {
 }
 
 impl RenderOptions {
+    /// Is V a colour: three numbers for each pixel, not one?
+    pub fn colors_light(&self) -> bool {
+        self.given.is_some() || self.settings.combination.is_some_and(|c| c.colors_light())
+    }
+
     /// A 1280x720 picture with these settings.
     pub fn new(settings: Settings) -> Self {
         Self {
@@ -136,6 +164,8 @@ impl RenderOptions {
             exposure: None,
             background: Vec3::new(0.05, 0.06, 0.08),
             all_casters: false,
+            reuse: true,
+            map_load_ms: 0.0,
             deform: None,
             deform_reach_m: 0.0,
             time_s: 0.0,

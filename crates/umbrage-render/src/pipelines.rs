@@ -17,14 +17,20 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Views that are numbers, not colour.
 pub const GREY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Texels per pixel, unrounded: see `wgsl/density.wgsl`.
+pub const DENSITY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// V, unrounded.
 pub const VISIBILITY: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// V where it is a colour, unrounded.
+pub const VISIBILITY_RGB: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The format that a view is drawn in.
-pub fn format_of(view: View) -> wgpu::TextureFormat {
+/// The format that a view is drawn in; `colors_light`: V is a colour.
+pub fn format_of(view: View, colors_light: bool) -> wgpu::TextureFormat {
     match view {
         View::Final | View::Light => COLOR,
+        View::Visibility if colors_light => VISIBILITY_RGB,
         View::Visibility => VISIBILITY,
+        View::Density | View::DensityLight => DENSITY,
         View::Depth | View::Distance | View::Projected | View::Channels => GREY,
     }
 }
@@ -32,7 +38,7 @@ pub fn format_of(view: View) -> wgpu::TextureFormat {
 /// Layouts of the bind groups.
 #[derive(Debug)]
 pub struct Layouts {
-    /// Group 0: frame, lights, views, maps, slides.
+    /// Group 0: frame, lights, views, maps, slides, maps of translucent casters and of colours.
     pub frame: wgpu::BindGroupLayout,
     /// Group 1 of mesh pipelines.
     pub material: wgpu::BindGroupLayout,
@@ -71,6 +77,12 @@ impl Layouts {
             })
         };
         use wgpu::{SamplerBindingType, ShaderStages, TextureSampleType, TextureViewDimension};
+        let kept = if color_maps {
+            TextureSampleType::Float { filterable: false }
+        } else {
+            TextureSampleType::Depth
+        };
+        let maps = texture(kept, TextureViewDimension::D2Array);
         Self {
             color_maps,
             frame: group(
@@ -84,19 +96,14 @@ impl Layouts {
                         has_dynamic_offset: false,
                         min_binding_size: NonZeroU64::new(size_of::<GpuView>() as u64),
                     },
-                    texture(
-                        if color_maps {
-                            TextureSampleType::Float { filterable: false }
-                        } else {
-                            TextureSampleType::Depth
-                        },
-                        TextureViewDimension::D2Array,
-                    ),
+                    maps,
                     wgpu::BindingType::Sampler(SamplerBindingType::Comparison),
                     texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
                     texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
                     wgpu::BindingType::Sampler(SamplerBindingType::NonFiltering),
+                    maps,
+                    texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
                 ],
             ),
             material: crate::materials::layout(device),
@@ -263,6 +270,8 @@ pub fn screen_pipeline(
         View::Distance => "fs_distance",
         View::Projected => "fs_projected",
         View::Channels => "fs_channels",
+        View::Density => "fs_density",
+        View::DensityLight => "fs_density_light",
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
@@ -280,7 +289,7 @@ pub fn screen_pipeline(
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(false),
             depth_compare: Some(match view {
-                View::Depth | View::Channels => wgpu::CompareFunction::Always,
+                View::Depth | View::Channels | View::DensityLight => wgpu::CompareFunction::Always,
                 _ => wgpu::CompareFunction::NotEqual,
             }),
             stencil: Default::default(),
@@ -291,7 +300,7 @@ pub fn screen_pipeline(
             module: &shader,
             entry_point: Some(entry_point),
             compilation_options: Default::default(),
-            targets: &[Some(format_of(view).into())],
+            targets: &[Some(format_of(view, needs.colors_light()).into())],
         }),
         multiview_mask: None,
         cache: None,

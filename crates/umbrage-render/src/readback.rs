@@ -8,7 +8,15 @@ use crate::gpu::Gpu;
 /// # Errors
 /// [`RenderError::Gpu`] when the device is lost or reported an error.
 pub fn wait(gpu: &Gpu) -> Result<(), RenderError> {
-    let waited = gpu.device.poll(wgpu::PollType::Wait { submission_index: None, timeout: None });
+    wait_for(gpu, None)
+}
+
+/// Waits until the GPU has done one submission, whatever others are under way.
+///
+/// # Errors
+/// As [`wait`].
+pub fn wait_for(gpu: &Gpu, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), RenderError> {
+    let waited = gpu.device.poll(wgpu::PollType::Wait { submission_index, timeout: None });
     gpu.check()?;
     waited.map(|_| ()).map_err(|e| RenderError::Gpu(e.to_string()))
 }
@@ -39,8 +47,19 @@ pub fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
 /// # Errors
 /// [`RenderError::Gpu`] with the device's words.
 pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderError> {
+    layer(gpu, texture, 0)
+}
+
+/// The rows of one layer of a texture, without padding.
+///
+/// # Errors
+/// [`RenderError::Gpu`] with the device's words.
+pub fn layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>, RenderError> {
     let (width, height) = (texture.width(), texture.height());
-    let row = texture.format().block_copy_size(None).unwrap_or(4) * width;
+    let format = texture.format();
+    let aspect =
+        if format.has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
+    let row = format.block_copy_size(Some(aspect)).unwrap_or(4) * width;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("read-back"),
@@ -50,7 +69,12 @@ pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderErro
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            aspect,
+        },
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {
@@ -59,7 +83,7 @@ pub fn texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, RenderErro
                 rows_per_image: None,
             },
         },
-        texture.size(),
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     gpu.queue.submit([encoder.finish()]);
     let bytes = map(gpu, &buffer)?;

@@ -1,61 +1,71 @@
-//! A scene made ready for one GPU: everything that a frame needs and no frame changes.
+//! A scene made ready for one GPU: everything that a frame needs, and what of it follows the world.
 
+use crate::bindings::FrameBindings;
 use crate::draw_list::{Batch, Items, Work};
+use crate::frame::Ages;
 use crate::geometry::Geometry;
 use crate::gpu::Gpu;
-use crate::layout::{GpuFrame, GpuLight, MAX_LIGHTS};
+use crate::layout::{GpuFrame, MAX_LIGHTS};
 use crate::lights::{Lights, eye_of};
+use crate::maps::{Casting, Growing, MapMaker, MapSet};
 use crate::materials::MaterialEntry;
+use crate::moving::World;
 use crate::options::{RenderOptions, View};
+use crate::peeled::{Peeled, caster_passes};
 use crate::pipelines::{Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
 use crate::targets::Targets;
 use crate::textures::Textures;
-use crate::{RenderError, exposure};
-use bytemuck::Zeroable;
+use crate::threaded::{MapSchedule, MapThread, locked};
+use crate::{RenderError, exposure, own_wgsl};
 use glam::{Mat4, Vec3};
-use umbrage::caster::{GpuCasterView, NO_DEFORM};
-use umbrage::core::fit::{self, ShadowView};
-use umbrage::core::layout::GpuView;
-use umbrage::core::plan::{Draws, Pass, plan};
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+use umbrage::caster::NO_DEFORM;
+use umbrage::core::fit::ShadowView;
+use umbrage::core::plan::{Draws, plan};
 use umbrage::core::technique::Storage;
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind};
-use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, choose_format};
-use umbrage_scene::{Image, Instance, Reflectance, Scene};
-use wgpu::util::DeviceExt;
-
-/// The maps and what draws them.
-#[derive(Debug)]
-pub(crate) struct Shadows {
-    pub pass: Pass,
-    pub format: ChosenFormat,
-    pub maps: ShadowMaps,
-    pub pipelines: CasterPipelines,
-    pub view_group: wgpu::BindGroup,
-    /// Draws of each view.
-    pub casters: Vec<Vec<Batch>>,
-}
+use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentPipelines, choose_format};
+use umbrage_scene::{Image, Instance, Reflectance, Scene, SceneLight};
 
 /// A scene made ready for one GPU.
 #[derive(Debug)]
 pub struct Renderer<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) options: RenderOptions,
-    pub(crate) geometry: Geometry,
-    pub(crate) materials: Vec<MaterialEntry>,
-    pub(crate) material_of_mesh: Vec<usize>,
-    pub(crate) shadows: Option<Shadows>,
+    pub(crate) world: Arc<World>,
+    pub(crate) geometry: Arc<Geometry>,
+    pub(crate) materials: Arc<Vec<MaterialEntry>>,
+    pub(crate) material_of_mesh: Arc<Vec<usize>>,
+    pub(crate) maker: Arc<MapMaker>,
+    /// One set of maps, or two that a thread and the frames exchange.
+    pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
+    pub(crate) schedule: MapSchedule,
+    pub(crate) thread: Option<MapThread>,
+    /// When the frame last drew maps.
+    pub(crate) drawn_at: Option<Instant>,
     pub(crate) targets: Targets,
     pub(crate) mesh_pipelines: MeshPipelines,
     pub(crate) screen: Option<wgpu::RenderPipeline>,
-    pub(crate) frame_group: wgpu::BindGroup,
+    bindings: FrameBindings,
+    /// A bind group for each set, and which of its changes it was made for.
+    pub(crate) groups: Vec<Option<(u64, wgpu::BindGroup)>>,
+    pub(crate) frame_group: Option<wgpu::BindGroup>,
     pub(crate) gbuffer_group: Option<wgpu::BindGroup>,
-    pub(crate) instances: wgpu::Buffer,
+    pub(crate) instances: Growing,
     pub(crate) solid: Vec<Batch>,
     pub(crate) blended: Vec<Batch>,
     pub(crate) clip_from_world: Mat4,
+    /// World, set and its changes that the uniforms hold.
+    pub(crate) told: Option<(u64, usize, u64)>,
+    pub(crate) ages: Ages,
     views: Vec<ShadowView>,
+    views_of_light: Vec<Range<usize>>,
     exposure: f32,
+    /// Warnings that no change takes away, and all.
+    lasting: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -70,6 +80,7 @@ impl<'a> Renderer<'a> {
         camera: &Camera,
         options: RenderOptions,
     ) -> Result<Self, RenderError> {
+        let options = crate::density::options(options);
         camera.check().map_err(RenderError::Camera)?;
         check_samples(gpu, options.samples)?;
         let emits = scene.meshes.iter().any(|mesh| scene.materials[mesh.material].emissive != Vec3::ZERO);
@@ -77,12 +88,14 @@ impl<'a> Renderer<'a> {
         let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
 
         check_given(scene, &options)?;
+        options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
+        options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
         let format = choose_format(storage, |format| gpu.usages_of(format))?;
         let layouts =
             Layouts::new(&gpu.device, options.settings.combination.is_some() && format.storage.is_color());
-        let geometry = Geometry::new(&gpu.device, scene);
+        let geometry = Arc::new(Geometry::new(&gpu.device, scene));
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
         let materials = crate::materials::make(
@@ -93,92 +106,139 @@ impl<'a> Renderer<'a> {
             &layouts.material,
             &caster_layout,
         );
-        let items = Items::new(scene, &geometry, &materials, options.deform_reach_m);
-        let seen_by = fit::Eye { camera: *camera, aspect: options.size.x as f32 / options.size.y as f32 };
-        let lights =
-            Lights::new(scene, &options.settings, format.storage, exposure, &items.bounds_world(), seen_by)?;
-        let shown = shown_view(scene, &lights, &options)?;
+        let world = World {
+            items: Items::new(scene, &geometry, &materials, options.deform_reach_m),
+            lights: scene.lights.clone(),
+            camera: *camera,
+            time_s: options.time_s,
+            mesh_versions: vec![0; scene.meshes.len()],
+            version: 0,
+        };
+        let maker = make_maker(
+            gpu,
+            &options,
+            format,
+            &caster_layout,
+            exposure,
+            (Arc::clone(&geometry), Arc::new(materials), scene),
+        )?;
+        let mut set = MapSet::new(&gpu.device);
+        maker.refresh(&mut set, &world)?;
 
-        let eye = Eye::new(camera, &options, shown.as_ref().map(|(light, view)| (*light, view)));
-        let frustum = Frustum::from_clip(eye.clip_from_world, DEPTH);
-        let mut instances = Vec::new();
-        let solid = items.solid(scene, &frustum, &mut instances);
-        let blended = items.blended(scene, &frustum, eye.position, &mut instances);
-        let all_casters = options.all_casters || options.view.shows_map();
-        let casters: Vec<_> = lights
-            .light_of_view
-            .iter()
-            .zip(&lights.views)
-            .map(|of| items.casters(scene, of, all_casters, &mut instances))
-            .collect();
-        let shadows = make_shadows(gpu, &options, format, &lights, casters, &caster_layout)?;
-
-        let needs = shader_needs(scene, &options, &lights);
-        let mut mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
-        let solid_target =
-            if lit_at_once { MeshTarget::Forward { samples: options.samples } } else { MeshTarget::Gbuffer };
-        mesh_pipelines.prepare(&gpu.device, solid_target, solid.iter().map(|b| b.variant));
-        if matches!(options.view, View::Final | View::Light) {
-            let target = MeshTarget::Forward { samples: options.samples };
-            mesh_pipelines.prepare(&gpu.device, target, blended.iter().map(|b| b.variant));
-        }
+        let needs = shader_needs(scene, &options, &set.lights);
+        let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
         let screen = (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view));
-
-        let frame = eye.frame(&options, lights.lights.len(), exposure);
-        let slide_images: Vec<&Image> = lights.slides.iter().map(|i| &scene.images[*i]).collect();
-        let frame_group =
-            frame_group(gpu, &layouts, &frame, &lights, shadows.as_ref(), &options, &slide_images);
+        let slide_images: Vec<&Image> = set.lights.slides.iter().map(|i| &scene.images[*i]).collect();
         let gbuffer_group = gbuffer_group(gpu, &layouts, &targets);
-        let instances = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("instances"),
-            contents: if instances.is_empty() { &[0; 48] } else { bytemuck::cast_slice(&instances) },
-            usage: wgpu::BufferUsages::VERTEX,
-        });
-        gpu.check()?;
-        let mut warnings = lights.warnings;
+        let bindings = FrameBindings::new(gpu, layouts, &options, &slide_images);
+        let mut lasting = Vec::new();
         if options.samples > 1 && !lit_at_once {
             let id = options.view.id();
-            warnings
+            lasting
                 .push(format!("the view `{id}` has one sample a pixel; {} were asked for", options.samples));
         }
-        Ok(Self {
+        let usage = wgpu::BufferUsages::VERTEX;
+        let mut renderer = Self {
             gpu,
-            material_of_mesh: scene.meshes.iter().map(|m| m.material).collect(),
+            world: Arc::new(world),
             geometry,
-            materials,
-            shadows,
+            materials: Arc::clone(&maker.materials),
+            material_of_mesh: Arc::clone(&maker.material_of_mesh),
+            maker: Arc::new(maker),
+            sets: vec![Arc::new(Mutex::new(set))],
+            schedule: MapSchedule::default(),
+            thread: None,
+            drawn_at: None,
             targets,
             mesh_pipelines,
             screen,
-            frame_group,
+            bindings,
+            groups: vec![None],
+            frame_group: None,
             gbuffer_group,
-            instances,
-            solid,
-            blended,
-            clip_from_world: eye.clip_from_world,
-            views: lights.views,
+            instances: Growing::new(&gpu.device, "instances", usage, 0),
+            solid: Vec::new(),
+            blended: Vec::new(),
+            clip_from_world: Mat4::IDENTITY,
+            told: None,
+            ages: Ages::default(),
+            views: Vec::new(),
+            views_of_light: Vec::new(),
             exposure,
-            warnings,
+            lasting,
+            warnings: Vec::new(),
             options,
-        })
+        };
+        let set = Arc::clone(&renderer.sets[0]);
+        renderer.tell(0, &locked(&set))?;
+        gpu.check()?;
+        Ok(renderer)
     }
 
-    /// Memory of all shadow maps, bytes.
+    /// Brings lists and uniforms up to the world as it is, looked up in a set of maps. No cost when they are.
+    pub(crate) fn tell(&mut self, index: usize, set: &MapSet) -> Result<(), RenderError> {
+        let now = (self.world.version, index, set.changes);
+        if self.told == Some(now) {
+            return Ok(());
+        }
+        let (gpu, world) = (self.gpu, Arc::clone(&self.world));
+        let shown = shown_view(&world.lights, &set.lights, &self.options)?;
+        let eye = Eye::new(&world.camera, &self.options, shown.as_ref().map(|(light, view)| (*light, view)));
+        let frustum = Frustum::from_clip(eye.clip_from_world, DEPTH);
+        let mut instances = Vec::new();
+        self.solid = world.items.solid(&frustum, &mut instances);
+        self.blended = world.items.blended(&frustum, eye.position, &mut instances);
+        self.instances.write(&gpu.device, &gpu.queue, bytemuck::cast_slice(&instances));
+        let forward = MeshTarget::Forward { samples: self.options.samples };
+        let solid_target = if self.screen.is_some() { MeshTarget::Gbuffer } else { forward };
+        self.mesh_pipelines.prepare(&gpu.device, solid_target, self.solid.iter().map(|b| b.variant));
+        if matches!(self.options.view, View::Final | View::Light) {
+            self.mesh_pipelines.prepare(&gpu.device, forward, self.blended.iter().map(|b| b.variant));
+        }
+        let lights = set.lights.relit(&world.lights, self.exposure);
+        let frame = eye.frame(&self.options, lights.len(), self.exposure, world.time_s);
+        self.bindings.write(&gpu.queue, &frame, &lights);
+        let group = match self.groups[index].take() {
+            Some((changes, group)) if changes == set.changes => group,
+            _ => self.bindings.group(&gpu.device, set),
+        };
+        self.frame_group = Some(group.clone());
+        self.groups[index] = Some((set.changes, group));
+        self.clip_from_world = eye.clip_from_world;
+        self.views.clone_from(&set.lights.views);
+        self.views_of_light.clone_from(&set.lights.views_of_light);
+        self.warnings = set.lights.warnings.iter().chain(&self.lasting).cloned().collect();
+        self.told = Some(now);
+        Ok(())
+    }
+
+    /// Memory of all shadow maps, bytes: that of all lights, and what is drawn on the way to them. It grows with the
+    /// number of views and their texels, and with nothing of the scene. Twice as much while a thread draws them.
     pub fn shadow_memory_bytes(&self) -> u64 {
-        self.shadows.as_ref().map_or(0, |s| s.maps.memory_bytes())
+        let peeled = self.maker.casting.as_ref().and_then(|casting| casting.peeled.as_ref());
+        let sets: u64 = self.sets.iter().map(|set| locked(set).memory_bytes()).sum();
+        let shadowed = !self.views.is_empty();
+        sets + peeled.filter(|_| shadowed).map_or(0, |peeled| peeled.peel.memory_bytes())
+    }
+
+    /// Memory of each light's maps, bytes; 0 for lights without. Twice as much while a thread draws them.
+    pub fn shadow_memory_of_lights(&self) -> Vec<u64> {
+        let layer: u64 =
+            self.sets.iter().map(|set| locked(set).maps().map_or(0, ShadowMaps::layer_bytes)).sum();
+        self.views_of_light.iter().map(|views| views.len() as u64 * layer).collect()
     }
 
     /// The depth format that the maps got, and why. `None` without maps.
     pub fn map_format(&self) -> Option<&ChosenFormat> {
-        self.shadows.as_ref().map(|s| &s.format)
+        (!self.views.is_empty()).then_some(&self.maker.format)
     }
 
-    /// The views of the lights that got one.
+    /// The views of the lights that got one, as the last frame looked them up.
     pub fn views(&self) -> &[ShadowView] {
         &self.views
     }
 
-    /// Factor from radiance to picture.
+    /// Factor from radiance to picture. It stays as it was found at the start.
     pub fn exposure(&self) -> f32 {
         self.exposure
     }
@@ -188,10 +248,62 @@ impl<'a> Renderer<'a> {
         &self.warnings
     }
 
-    /// What solid and blended surfaces, and each view's casters, ask of the GPU.
+    /// What solid and blended surfaces ask of the GPU.
     pub(crate) fn work_of(&self, batches: &[Batch]) -> Work {
         Work::of(batches, &self.geometry)
     }
+}
+
+/// What draws the maps.
+fn make_maker(
+    gpu: &Gpu,
+    options: &RenderOptions,
+    format: ChosenFormat,
+    caster_layout: &wgpu::BindGroupLayout,
+    exposure: f32,
+    (geometry, materials, scene): (Arc<Geometry>, Arc<Vec<MaterialEntry>>, &Scene),
+) -> Result<MapMaker, RenderError> {
+    let casting = make_casting(gpu, options, &format, caster_layout)?;
+    Ok(MapMaker {
+        device: gpu.device.clone(),
+        queue: gpu.queue.clone(),
+        settings: options.settings.clone(),
+        format,
+        casting,
+        geometry,
+        materials,
+        material_of_mesh: Arc::new(scene.meshes.iter().map(|m| m.material).collect()),
+        mesh_names: scene.meshes.iter().map(|mesh| mesh.name.clone()).collect(),
+        exposure,
+        aspect: options.size.x as f32 / options.size.y as f32,
+        all_casters: options.all_casters || options.view.shows_map(),
+        deforms: options.deform.is_some(),
+        load: Duration::try_from_secs_f32(options.map_load_ms * 1e-3).unwrap_or_default(),
+    })
+}
+
+/// The passes that draw casters, and their pipelines; `None` for techniques without maps.
+fn make_casting(
+    gpu: &Gpu,
+    options: &RenderOptions,
+    format: &ChosenFormat,
+    caster_layout: &wgpu::BindGroupLayout,
+) -> Result<Option<Casting>, RenderError> {
+    let (Some(pass), peel_pass) = caster_passes(&options.settings) else { return Ok(None) };
+    let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
+    let pipelines = CasterPipelines::new(&gpu.device, format, &pass, caster_layout, deform);
+    let size_texel = options.settings.map_size_texel();
+    let peel = |pass| Peeled::new(&gpu.device, pass, size_texel, caster_layout, deform);
+    let mut tinting = plan(&options.settings).into_iter().filter(|pass| pass.draws == Draws::Translucent);
+    let translucent = match (tinting.next(), tinting.next()) {
+        (Some(colors), Some(nearest)) => {
+            let groups = [&pipelines.view_layout, caster_layout];
+            let made = TranslucentPipelines::new(&gpu.device, format, &colors, groups, deform);
+            Some(([colors, nearest], made))
+        }
+        _ => None,
+    };
+    Ok(Some(Casting { peeled: peel_pass.map(peel).transpose()?, pass, pipelines, translucent }))
 }
 
 /// What the shaders of a scene must be able to do, and no more.
@@ -208,6 +320,7 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, lights: &Lights) -> Shad
         lights: lights.lights.len(),
         point: scene.lights.iter().any(|l| l.light.kind == LightKind::Point),
         places: lights.lights.iter().any(|l| l.places > 1),
+        density: options.view.is_density(),
         deform: options.deform.clone(),
         kernel: options.kernel.clone(),
     }
@@ -235,7 +348,7 @@ impl Eye {
         Self { clip_from_world, position: camera.position_world, towards: eye_of(camera) }
     }
 
-    fn frame(&self, options: &RenderOptions, light_count: usize, exposure: f32) -> GpuFrame {
+    fn frame(&self, options: &RenderOptions, light_count: usize, exposure: f32, time_s: f32) -> GpuFrame {
         GpuFrame {
             clip_from_world: self.clip_from_world,
             world_from_clip: self.clip_from_world.as_dmat4().inverse().as_mat4(),
@@ -246,7 +359,7 @@ impl Eye {
             light_count: light_count as u32,
             shown_light: options.shown_light as u32,
             exposure,
-            time_s: options.time_s,
+            time_s,
         }
     }
 }
@@ -302,7 +415,7 @@ fn check_given(scene: &Scene, options: &RenderOptions) -> Result<(), RenderError
 
 /// The light that the debug views show, when they need one.
 fn shown_view(
-    scene: &Scene,
+    scene_lights: &[SceneLight],
     lights: &Lights,
     options: &RenderOptions,
 ) -> Result<Option<(Light, ShadowView)>, RenderError> {
@@ -317,130 +430,11 @@ fn shown_view(
         )));
     }
     match lights.views_of_light[index].clone().next() {
-        Some(view) => Ok(Some((scene.lights[index].light, lights.views[view]))),
+        Some(view) => Ok(Some((scene_lights[index].light, lights.views[view]))),
         None if options.view.needs_map() => Err(RenderError::View(format!(
             "the view `{id}` needs a shadow map, and light {index} has none with technique `{}`",
             options.settings.technique.id
         ))),
         None => Ok(None),
     }
-}
-
-fn make_shadows(
-    gpu: &Gpu,
-    options: &RenderOptions,
-    format: ChosenFormat,
-    lights: &Lights,
-    casters: Vec<Vec<Batch>>,
-    caster_layout: &wgpu::BindGroupLayout,
-) -> Result<Option<Shadows>, RenderError> {
-    let Some(pass) = plan(&options.settings).into_iter().find(|pass| pass.draws == Draws::Casters) else {
-        return Ok(None);
-    };
-    if lights.views.is_empty() {
-        return Ok(None);
-    }
-    let maps =
-        ShadowMaps::new(&gpu.device, &format, options.settings.map_size_texel(), lights.views.len() as u32)?;
-    let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
-    let pipelines = CasterPipelines::new(&gpu.device, &format, &pass, caster_layout, deform);
-    let stride = GpuCasterView::STRIDE as usize;
-    let mut matrices = vec![0u8; lights.views.len() * stride];
-    for (view, slot) in lights.views.iter().zip(matrices.chunks_mut(stride)) {
-        let view = GpuCasterView::new(view, &pass, options.time_s);
-        slot[..size_of_val(&view)].copy_from_slice(bytemuck::bytes_of(&view));
-    }
-    let matrices = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("caster views"),
-        contents: &matrices,
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    let view_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("caster view"),
-        layout: &pipelines.view_layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &matrices,
-                offset: 0,
-                size: std::num::NonZeroU64::new(size_of::<GpuCasterView>() as u64),
-            }),
-        }],
-    });
-    Ok(Some(Shadows { pass, format, maps, pipelines, view_group, casters }))
-}
-
-fn frame_group(
-    gpu: &Gpu,
-    layouts: &Layouts,
-    frame: &GpuFrame,
-    lights: &Lights,
-    shadows: Option<&Shadows>,
-    options: &RenderOptions,
-    slide_images: &[&Image],
-) -> wgpu::BindGroup {
-    let uniform = |label, contents: &[u8]| {
-        gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(label),
-            contents,
-            usage: wgpu::BufferUsages::UNIFORM,
-        })
-    };
-    let mut gpu_lights = [GpuLight::zeroed(); MAX_LIGHTS];
-    gpu_lights[..lights.lights.len()].copy_from_slice(&lights.lights);
-    let frame = uniform("frame", bytemuck::bytes_of(frame));
-    let gpu_lights = uniform("lights", bytemuck::cast_slice(&gpu_lights));
-    // A binding cannot be empty.
-    let none = [GpuView::zeroed()];
-    let views = if lights.gpu_views.is_empty() { &none[..] } else { &lights.gpu_views };
-    let gpu_views = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("views"),
-        contents: bytemuck::cast_slice(views),
-        usage: wgpu::BufferUsages::STORAGE,
-    });
-    let compare = umbrage::maps::comparison_sampler(&gpu.device);
-    let point = umbrage::maps::point_sampler(&gpu.device);
-    let slides = crate::textures::slides(&gpu.device, &gpu.queue, slide_images);
-    let slide_sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("slide"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        ..Default::default()
-    });
-    let is_color = layouts.color_maps;
-    // A binding cannot be empty: without maps one texel stands in, and no light refers to it.
-    let stand_in = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("no maps"),
-        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: if is_color { wgpu::TextureFormat::R32Float } else { wgpu::TextureFormat::Depth32Float },
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    });
-    let stand_in = stand_in.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..Default::default()
-    });
-    let maps = shadows.map_or(&stand_in, |s| s.maps.array());
-    let given = crate::textures::given(&gpu.device, &gpu.queue, options);
-    let entries = [
-        frame.as_entire_binding(),
-        gpu_lights.as_entire_binding(),
-        gpu_views.as_entire_binding(),
-        wgpu::BindingResource::TextureView(maps),
-        wgpu::BindingResource::Sampler(&compare),
-        wgpu::BindingResource::TextureView(&slides),
-        wgpu::BindingResource::Sampler(&slide_sampler),
-        wgpu::BindingResource::TextureView(&given),
-        wgpu::BindingResource::Sampler(&point),
-    ];
-    let entries: Vec<_> =
-        (0u32..).zip(entries).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("frame"),
-        layout: &layouts.frame,
-        entries: &entries,
-    })
 }

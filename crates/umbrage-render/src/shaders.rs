@@ -1,5 +1,6 @@
 //! The renderer's shaders: library modules, the chosen filter, and the passes, joined as text.
 
+use crate::density::EDGE_ON_COS;
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
@@ -13,6 +14,7 @@ const SHADE: &str = include_str!("../wgsl/shade.wgsl");
 const MESH: &str = include_str!("../wgsl/mesh.wgsl");
 const SCREEN: &str = include_str!("../wgsl/screen.wgsl");
 const CHANNELS: &str = include_str!("../wgsl/channels.wgsl");
+const DENSITY: &str = include_str!("../wgsl/density.wgsl");
 
 /// What a scene's shaders must be able to do. What is not needed is not in their text: software rasterisers, and
 /// many GPUs, pay for both sides of a branch.
@@ -36,10 +38,19 @@ pub struct ShaderNeeds {
     pub point: bool,
     /// Is any light seen from several places?
     pub places: bool,
+    /// Are texels per pixel shown?
+    pub density: bool,
     /// Moves vertices: see [`umbrage::caster::NO_DEFORM`].
     pub deform: Option<Arc<str>>,
     /// Weights of the filter `kernel`, in place of its own.
     pub kernel: Option<Arc<str>>,
+}
+
+impl ShaderNeeds {
+    /// Is V a colour?
+    pub fn colors_light(&self) -> bool {
+        self.given || self.combination.is_some_and(|c| c.colors_light())
+    }
 }
 
 /// Up to how many lights are written out one by one: an index that is a constant is far cheaper than one that is not.
@@ -87,15 +98,20 @@ fn mapped(needs: &ShaderNeeds, combination: &Combination) -> String {
     } else {
         "p_world"
     };
+    let (seen, maps) = if combination.colors_light() {
+        ("vec3f", "maps, translucent_maps, light_colors")
+    } else {
+        ("f32", "maps")
+    };
     // Outside a cone's map lies what the cone does not reach; outside a parallel light's map nothing can block it.
     let seen_in = format!(
-        "alias Seen = f32;
-fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> f32 {{
+        "alias Seen = {seen};
+fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
     let at = umbrage_locate(view, {moved}, normal);
-    let outside = select(0.0, 1.0, light.kind == DIRECTIONAL || light.places > 1u);
-    let seen = select(outside, {filter}(maps, {sampler}, view, at), at.inside);
+    let outside = Seen(select(0.0, 1.0, light.kind == DIRECTIONAL || light.places > 1u));
+    let seen = select(outside, {filter}({maps}, {sampler}, view, at), at.inside);
     // Of an area light, a part may be below the surface's horizon though its middle is not.
-    return select(seen, 0.0, light.places > 1u && !at.faces);
+    return select(seen, Seen(0.0), light.places > 1u && !at.faces);
 }}
 "
     );
@@ -108,7 +124,7 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
     let body = if needs.places {
         format!(
             "    let tiles = select(1u, 6u, light.kind == POINT);
-    var sum = 0.0;
+    var sum = Seen(0.0);
     for (var place = 0u; place < light.places; place++) {{
         let first = u32(light.view) + place * tiles;
         sum += {one};
@@ -121,7 +137,7 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
     };
     format!(
         "{seen_in}fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
-{body}    return select(seen, 1.0, light.view < 0);
+{body}    return select(seen, Seen(1.0), light.view < 0);
 }}
 "
     )
@@ -132,6 +148,9 @@ fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
     // The debug views locate points and read maps whatever the technique is.
     modules.extend(["view", "light", "cookie", "locate", "face", "map"]);
+    if needs.density {
+        modules.push("density");
+    }
     let own_kernel = needs.kernel.as_deref().filter(|_| modules.contains(&"filter/kernel"));
     let library = match own_kernel {
         Some(kernel) => assemble_with(&modules, &[("kernel", kernel)]),
@@ -167,7 +186,12 @@ pub fn mesh(needs: &ShaderNeeds) -> String {
 /// The shader that covers the screen.
 pub fn screen(needs: &ShaderNeeds) -> String {
     let is_color = needs.combination.is_some_and(|c| c.storage.is_color());
-    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }].join("\n")
+    let density = if needs.density {
+        format!("const EDGE_ON_COS = {EDGE_ON_COS:?};\n{DENSITY}")
+    } else {
+        String::new()
+    };
+    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }, &density].join("\n")
 }
 
 /// Every shader that the renderer can make, with a name: for validation. Combinations and kinds of scenes do not touch each other,
@@ -184,6 +208,7 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
         lights,
         point: lights > 1,
         places: lights > WRITTEN_OUT,
+        density: combination.is_some() && lights > 0,
         deform: None,
         kernel: None,
     };

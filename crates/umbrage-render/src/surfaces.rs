@@ -1,5 +1,6 @@
 //! The surfaces of a picture, read back from the G-buffer.
 
+use crate::threaded::locked;
 use crate::{RenderError, Renderer, readback};
 use glam::{DVec3, DVec4, Vec2, Vec3};
 use umbrage::core::DEPTH;
@@ -11,6 +12,8 @@ pub struct DrawnSurface {
     pub p_world: DVec3,
     /// As it is shaded: interpolated, bent by the normal map. Unit length.
     pub shading_normal_world: Vec3,
+    /// The triangle's own, on the viewer's side. Unit length.
+    pub normal_world: Vec3,
 }
 
 /// The inverse of `pack_normal` in `wgsl/surface.wgsl`.
@@ -23,6 +26,22 @@ fn unpack_normal(packed: u32) -> Vec3 {
 }
 
 impl Renderer<'_> {
+    /// What the map of a view holds after a frame: its texels' bytes as the format has them, rows from the top.
+    ///
+    /// # Errors
+    /// [`RenderError::View`] when there is no such map, or when its format cannot be copied (24-bit depth);
+    /// [`RenderError::Gpu`] when the device is lost.
+    pub fn map_bytes(&self, view: usize) -> Result<Vec<u8>, RenderError> {
+        let set = locked(&self.sets[0]);
+        let Some(maps) = set.maps().filter(|_| view < self.views().len()) else {
+            return Err(RenderError::View(format!("there is no map {view}")));
+        };
+        if maps.texture().format() == wgpu::TextureFormat::Depth24Plus {
+            return Err(RenderError::View("24-bit depth cannot be copied; set storage=depth32f".into()));
+        }
+        readback::layer(self.gpu, maps.texture(), view as u32)
+    }
+
     /// The surface in each pixel after a frame, rows from the top; `None` where nothing is. Surfaces that are mixed by alpha
     /// are not among them.
     ///
@@ -50,6 +69,7 @@ impl Renderer<'_> {
             (depth != DEPTH.clear()).then(|| DrawnSurface {
                 p_world: p.truncate() / p.w,
                 shading_normal_world: unpack_normal(word(packed)),
+                normal_world: unpack_normal(word(&packed[12..])),
             })
         };
         Ok(packed.chunks_exact(16).zip(depth.chunks_exact(4)).enumerate().map(surface).collect())

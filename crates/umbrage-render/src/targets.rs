@@ -46,7 +46,8 @@ impl Targets {
         use wgpu::TextureUsages as Usage;
         let drawn = Usage::RENDER_ATTACHMENT;
         let samples = if deferred { 1 } else { options.samples };
-        let output = make("output", format_of(options.view), 1, drawn | Usage::COPY_SRC);
+        let output =
+            make("output", format_of(options.view, options.colors_light()), 1, drawn | Usage::COPY_SRC);
         let read = drawn | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
         let depth = make("depth", DEPTH_FORMAT, samples, if deferred { read } else { drawn });
         let gbuffer = deferred.then(|| make("gbuffer", GBUFFER, 1, read));

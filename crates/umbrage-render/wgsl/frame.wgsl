@@ -54,6 +54,9 @@ struct Light {
 // V that was found elsewhere, a layer a light; read only by shaders that are made for it.
 @group(0) @binding(7) var given_v: texture_2d_array<f32>;
 @group(0) @binding(8) var map_point: sampler;
+// The nearest translucent casters, and what all of them let through; read only where light is coloured.
+@group(0) @binding(9) var translucent_maps: UmbrageMap;
+@group(0) @binding(10) var light_colors: texture_2d_array<f32>;
 
 // The pixel that is shaded.
 var<private> at_pixel: vec2u;

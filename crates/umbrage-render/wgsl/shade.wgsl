@@ -6,7 +6,7 @@ fn towards_eye(p_world: vec3f) -> vec3f {
 }
 
 // Visibility V of a light from a surface: 0 behind it and outside its cone, else what the technique says. `Seen` is a
-// number, or three where V is given by the colour.
+// number, or three where light may be coloured on its way.
 fn visibility(index: u32, light: Light, s: Surface, p_world: vec3f, towards_light: vec3f) -> Seen {
     let in_cone = light.kind != SPOT || dot(-towards_light, light.direction) >= light.cos_outer;
     return select(Seen(0.0), visible_share(index, light, p_world, s.normal, towards_light), in_cone);

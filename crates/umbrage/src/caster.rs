@@ -6,7 +6,7 @@ use glam::Mat4;
 use std::num::NonZeroU64;
 use umbrage_core::DEPTH;
 use umbrage_core::fit::ShadowView;
-use umbrage_core::plan::Pass;
+use umbrage_core::plan::{Cull, Keeps, Pass};
 use umbrage_core::technique::Storage;
 
 /// The vertex buffers that caster pipelines read.
@@ -46,10 +46,16 @@ pub fn depth_compare() -> wgpu::CompareFunction {
     if DEPTH.is_reversed() { wgpu::CompareFunction::GreaterEqual } else { wgpu::CompareFunction::LessEqual }
 }
 
+/// Can maps be drawn without a near plane that cuts? What lies before it is then flattened onto it, and its shadow is whole. Needs
+/// the optional feature `DEPTH_CLIP_CONTROL`; without it, casters nearer to the light than the near plane are cut off.
+pub fn unclipped(device: &wgpu::Device) -> bool {
+    device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
+}
+
 /// Mirrors `CasterView` of `wgsl/caster.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
 /// view, [`GpuCasterView::STRIDE`] bytes apart.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct GpuCasterView {
     /// World to clip space.
     pub clip_from_world: Mat4,
@@ -98,23 +104,67 @@ pub fn caster_shader(deform: &str) -> String {
     [deform, &away, include_str!("../wgsl/caster.wgsl")].join("\n")
 }
 
+/// Channels of 8 bits that a colour target keeps distance in; 0: one float keeps it.
+pub(crate) fn channels(storage: Storage) -> f64 {
+    match storage {
+        Storage::Packed1 => 1.0,
+        Storage::Packed2 => 2.0,
+        Storage::Packed3 => 3.0,
+        _ => 0.0,
+    }
+}
+
+/// The polygon offset of a planned pass; colour targets take theirs in the shader.
+pub(crate) fn depth_bias(storage: Storage, pass: &Pass) -> wgpu::DepthBiasState {
+    if storage.is_color() {
+        return wgpu::DepthBiasState::default();
+    }
+    wgpu::DepthBiasState { constant: pass.offset.constant, slope_scale: pass.offset.slope, clamp: 0.0 }
+}
+
+/// The same, and what draws behind a layer that was drawn before: see [`crate::peel`].
+pub fn peel_shader(deform: &str) -> String {
+    // All pipelines of the pass then begin with the same two groups: what is bound stays bound from one to the next.
+    let caster = include_str!("../wgsl/caster.wgsl").replace("@group(1)", "@group(2)");
+    let away = format!("const AWAY = {:?};\n", DEPTH.away());
+    [deform, &away, &caster, include_str!("../wgsl/peel.wgsl")].join("\n")
+}
+
+/// The fragment shader of a pass, for solid casters or cut-out ones, depth or colour. `None`: depth is all that is drawn.
+fn fragment_entry(keeps: Keeps, cut_out: bool, is_color: bool) -> Option<&'static str> {
+    match (keeps, cut_out, is_color) {
+        (Keeps::Nearest, false, false) => None,
+        (Keeps::Nearest, true, false) => Some("fs_cut_out"),
+        (Keeps::Nearest, false, true) => Some("fs_solid_color"),
+        (Keeps::Nearest, true, true) => Some("fs_cut_out_color"),
+        (Keeps::Behind, false, _) => Some("fs_behind"),
+        (Keeps::Behind, true, _) => Some("fs_behind_cut_out"),
+        (Keeps::Midpoint, false, false) => Some("fs_midpoint"),
+        (Keeps::Midpoint, true, false) => Some("fs_midpoint_cut_out"),
+        (Keeps::Midpoint, false, true) => Some("fs_midpoint_color"),
+        (Keeps::Midpoint, true, true) => Some("fs_midpoint_cut_out_color"),
+    }
+}
+
 /// Pipelines that draw casters, and the layouts that they take.
 #[derive(Debug)]
 pub struct CasterPipelines {
-    /// Casters that are no closed solids, or not wholly in front of the light.
+    /// Casters of which all faces are drawn.
     pub open: wgpu::RenderPipeline,
-    /// Closed casters wholly in front of the light: what their back faces block, their front faces block too.
+    /// Casters of which the pass leaves out one side, as its [`Cull`] says.
     pub closed: wgpu::RenderPipeline,
     /// The same, placed by a mirroring transform, which turns their winding.
     pub closed_mirrored: wgpu::RenderPipeline,
     /// Casters whose texture cuts holes.
     pub cut_out: wgpu::RenderPipeline,
+    /// The group of [`Self::cut_out_layout`]: 1, or 2 where the pass keeps what lies behind a layer.
+    pub cut_out_group: u32,
     /// Group 0: a [`GpuCasterView`], a uniform buffer with a dynamic offset.
     pub view_layout: wgpu::BindGroupLayout,
 }
 
 impl CasterPipelines {
-    /// Group 1 of cut-out casters: base colour texture, its sampler.
+    /// Group [`Self::cut_out_group`] of cut-out casters: base colour texture, its sampler.
     pub fn cut_out_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage cut-out caster"),
@@ -139,7 +189,8 @@ impl CasterPipelines {
         })
     }
 
-    /// Makes the pipelines of a planned pass for maps of `format`. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
+    /// Makes the pipelines of a planned pass for maps of `format`. Those of passes that keep what lies behind a layer take it in
+    /// group 1: [`crate::Peel::behind`]. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
     /// [`NO_DEFORM`] or a user's own.
     pub fn new(
         device: &wgpu::Device,
@@ -148,42 +199,19 @@ impl CasterPipelines {
         cut_out_layout: &wgpu::BindGroupLayout,
         deform: &str,
     ) -> Self {
+        let is_behind = pass.keeps != Keeps::Nearest;
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage caster"),
-            source: wgpu::ShaderSource::Wgsl(caster_shader(deform).into()),
+            source: wgpu::ShaderSource::Wgsl(
+                if is_behind { peel_shader(deform) } else { caster_shader(deform) }.into(),
+            ),
         });
-        let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("umbrage caster view"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: true,
-                    min_binding_size: NonZeroU64::new(size_of::<GpuCasterView>() as u64),
-                },
-                count: None,
-            }],
-        });
+        let view_layout = view_layout(device);
+        let layer_layout = is_behind.then(|| crate::peel::layer_layout(device));
         let is_color = format.storage.is_color();
-        let channels = match format.storage {
-            Storage::Packed1 => 1.0,
-            Storage::Packed2 => 2.0,
-            Storage::Packed3 => 3.0,
-            _ => 0.0,
-        };
-        let constants = [("CHANNELS", channels)];
+        let constants = [("CHANNELS", channels(format.storage))];
         let color_target = [Some(wgpu::ColorTargetState::from(format.format))];
-        // Colour targets take the bias in their shader.
-        let bias = if is_color {
-            wgpu::DepthBiasState::default()
-        } else {
-            wgpu::DepthBiasState {
-                constant: pass.offset.constant,
-                slope_scale: pass.offset.slope,
-                clamp: 0.0,
-            }
-        };
+        let bias = depth_bias(format.storage, pass);
         let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(label),
@@ -200,7 +228,11 @@ impl CasterPipelines {
                     compilation_options: Default::default(),
                     buffers: if cut_out { &buffers } else { &buffers[..2] },
                 },
-                primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
+                primitive: wgpu::PrimitiveState {
+                    cull_mode,
+                    unclipped_depth: unclipped(device),
+                    ..Default::default()
+                },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: if is_color { SCRATCH_DEPTH } else { format.format },
                     depth_write_enabled: Some(true),
@@ -209,13 +241,9 @@ impl CasterPipelines {
                     bias,
                 }),
                 multisample: Default::default(),
-                fragment: (cut_out || is_color).then(|| wgpu::FragmentState {
+                fragment: fragment_entry(pass.keeps, cut_out, is_color).map(|entry| wgpu::FragmentState {
                     module: &shader,
-                    entry_point: Some(match (cut_out, is_color) {
-                        (true, false) => "fs_cut_out",
-                        (true, true) => "fs_cut_out_color",
-                        _ => "fs_solid_color",
-                    }),
+                    entry_point: Some(entry),
                     compilation_options: wgpu::PipelineCompilationOptions {
                         constants: if is_color { &constants } else { &[] },
                         ..Default::default()
@@ -226,20 +254,42 @@ impl CasterPipelines {
                 cache: None,
             })
         };
-        let solid = [Some(&view_layout)];
+        let mut groups = vec![Some(&view_layout)];
+        groups.extend(layer_layout.as_ref().map(Some));
+        let cut_out_group = groups.len() as u32;
+        groups.push(Some(cut_out_layout));
+        let (solid, cut_out) = (&groups[..groups.len() - 1], &groups[..]);
+        let (closed, mirrored) = match pass.cull {
+            Cull::BackOfClosed => (Some(wgpu::Face::Back), Some(wgpu::Face::Front)),
+            Cull::FrontOfClosed => (Some(wgpu::Face::Front), Some(wgpu::Face::Back)),
+            Cull::Nothing | Cull::ByMaterial => (None, None),
+        };
         Self {
-            open: pipeline("umbrage open caster", &solid, false, None),
-            closed: pipeline("umbrage closed caster", &solid, false, Some(wgpu::Face::Back)),
-            closed_mirrored: pipeline("umbrage mirrored caster", &solid, false, Some(wgpu::Face::Front)),
-            cut_out: pipeline(
-                "umbrage cut-out caster",
-                &[Some(&view_layout), Some(cut_out_layout)],
-                true,
-                None,
-            ),
+            open: pipeline("umbrage open caster", solid, false, None),
+            closed: pipeline("umbrage closed caster", solid, false, closed),
+            closed_mirrored: pipeline("umbrage mirrored caster", solid, false, mirrored),
+            cut_out: pipeline("umbrage cut-out caster", cut_out, true, None),
+            cut_out_group,
             view_layout,
         }
     }
+}
+
+/// Group 0: one [`GpuCasterView`].
+fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("umbrage caster view"),
+        entries: &[wgpu::BindGroupLayoutEntry {
+            binding: 0,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: NonZeroU64::new(size_of::<GpuCasterView>() as u64),
+            },
+            count: None,
+        }],
+    })
 }
 
 /// Records the pass that draws one layer of the maps: clears it, then lets `draw` draw the casters.
@@ -260,7 +310,7 @@ pub fn record_caster_pass<'a>(
         ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::WHITE), store: wgpu::StoreOp::Store },
     })];
     let (depth, store) = match maps.scratch() {
-        Some(scratch) => (scratch, wgpu::StoreOp::Discard),
+        Some(scratch) => (scratch, maps.scratch_store()),
         None => (view, wgpu::StoreOp::Store),
     };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

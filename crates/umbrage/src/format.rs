@@ -27,6 +27,12 @@ pub const BY_PRECISION: [Storage; 6] = [
 /// The depth buffer of maps that are colour.
 pub const SCRATCH_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// How peeled layers are kept.
+pub const PEEL_STORAGE: Storage = Storage::Depth32Float;
+
+/// The same as `wgpu` calls it.
+pub const PEEL_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
 /// The format of a storage, `None` for `auto`.
 pub fn format_of(storage: Storage) -> Option<wgpu::TextureFormat> {
     match storage {

@@ -6,10 +6,14 @@
 pub mod caster;
 pub mod format;
 pub mod maps;
+pub mod peel;
+pub mod translucent;
 
 pub use caster::{CasterPipelines, CasterStreams, record_caster_pass};
 pub use format::{ChosenFormat, choose_format};
 pub use maps::ShadowMaps;
+pub use peel::{Peel, PeelPipelines, record_peel};
+pub use translucent::{TranslucentMaps, TranslucentPipelines, record_color_pass, record_nearest_pass};
 pub use umbrage_core as core;
 
 /// What can go wrong on the GPU's side. Each says what to do.
@@ -30,7 +34,7 @@ pub enum ShadowError {
     },
     /// A map larger than the device's textures may be.
     #[error(
-        "a {size_texel}x{size_texel} shadow map with {layers} layers is more than this device's textures may have ({limit}x{limit}, {layer_limit} layers); set a smaller map_size"
+        "a {size_texel}x{size_texel} shadow map with {layers} layers is more than this device's textures may have ({limit}x{limit}, {layer_limit} layers); set a smaller map_size, fewer views, or fewer lights"
     )]
     TooLarge {
         /// Asked for, texels.

@@ -11,6 +11,7 @@ pub struct ShadowMaps {
     array: wgpu::TextureView,
     /// Depth while a map of colour is drawn; one for all layers.
     scratch: Option<wgpu::TextureView>,
+    keeps_scratch: bool,
     bytes_per_texel: u32,
 }
 
@@ -44,8 +45,8 @@ impl ShadowMaps {
             })
         };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let texture =
-            make("umbrage shadow maps", layers, format.format, drawn | wgpu::TextureUsages::TEXTURE_BINDING);
+        let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let texture = make("umbrage shadow maps", layers, format.format, drawn | read);
         let scratch = is_color
             .then(|| make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default()));
         let aspect = if is_color { wgpu::TextureAspect::All } else { wgpu::TextureAspect::DepthOnly };
@@ -62,9 +63,21 @@ impl ShadowMaps {
             layers: (0..layers).map(|layer| view(layer, 1, wgpu::TextureViewDimension::D2)).collect(),
             array: view(0, layers, wgpu::TextureViewDimension::D2Array),
             scratch,
+            keeps_scratch: false,
             bytes_per_texel: format.storage.bytes_per_texel(),
             texture,
         })
+    }
+
+    /// The same maps, whose scratch depth outlives the pass that draws a layer, because a later pass tests it.
+    #[must_use]
+    pub fn keeping_scratch(self) -> Self {
+        Self { keeps_scratch: true, ..self }
+    }
+
+    /// What becomes of the scratch depth after a pass.
+    pub(crate) fn scratch_store(&self) -> wgpu::StoreOp {
+        if self.keeps_scratch { wgpu::StoreOp::Store } else { wgpu::StoreOp::Discard }
     }
 
     /// All layers, to sample.
@@ -82,9 +95,24 @@ impl ShadowMaps {
         self.scratch.as_ref()
     }
 
+    /// All layers, to copy from.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
+
     /// Width and height of a map, texels.
     pub fn size_texel(&self) -> u32 {
         self.texture.width()
+    }
+
+    /// Memory of one layer, bytes: what each view of a light adds.
+    pub fn layer_bytes(&self) -> u64 {
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * u64::from(self.bytes_per_texel)
+    }
+
+    /// Layers.
+    pub fn layer_count(&self) -> usize {
+        self.layers.len()
     }
 
     /// Memory of all layers, and of the depth that colour maps are drawn with, bytes: linear in the number of views, whatever

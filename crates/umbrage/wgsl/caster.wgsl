@@ -41,7 +41,8 @@ fn clip_position(p_object: vec3f, instance: Instance) -> vec4f {
 }
 
 struct Solid {
-    @builtin(position) position: vec4f,
+    // The same bits in every pass that draws the same caster: see `peel.wgsl`.
+    @invariant @builtin(position) position: vec4f,
 }
 
 @vertex
@@ -50,7 +51,7 @@ fn vs_solid(@location(0) p_object: vec3f, instance: Instance) -> Solid {
 }
 
 struct CutOut {
-    @builtin(position) position: vec4f,
+    @invariant @builtin(position) position: vec4f,
     // Texture coordinates, and what the texture's alpha is multiplied by so that 1 is the cutoff.
     @location(0) uv_alpha: vec3f,
 }
@@ -66,12 +67,17 @@ fn cut_out(uv_alpha: vec3f) {
     }
 }
 
+// The distance along the light's axis that a stored depth stands for, as a share of the way from near to far.
+fn share_of_depth(depth: f32) -> f32 {
+    let cone = view.near_m * (1.0 - depth) / (view.near_m + depth * (view.far_m - view.near_m));
+    return select(1.0 - depth, cone, view.perspective != 0u);
+}
+
 // What a colour target holds for a depth of which `slope` is the change to the next texel.
 fn color(depth: f32, slope: vec2f) -> vec4f {
     let steepest = max(abs(slope.x), abs(slope.y));
     let pushed = clamp(depth + AWAY * (view.offset_slope * steepest + view.offset_depth), 0.0, 1.0);
-    let cone = view.near_m * (1.0 - pushed) / (view.near_m + pushed * (view.far_m - view.near_m));
-    let share = select(1.0 - pushed, cone, view.perspective != 0u);
+    let share = share_of_depth(pushed);
     if CHANNELS == 0u {
         return vec4f(share, 0.0, 0.0, 1.0);
     }

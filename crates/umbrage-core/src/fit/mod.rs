@@ -64,6 +64,14 @@ impl ShadowView {
         Frustum::from_clip(self.clip_from_world(), DEPTH)
     }
 
+    /// What may cast into the view: all before the light, but for what lies before a near plane that was asked for.
+    pub fn caster_frustum(&self, light: &Light) -> Frustum {
+        match light.near_m {
+            Some(_) => self.frustum(),
+            None => Frustum::from_clip_without_near(self.clip_from_world(), DEPTH),
+        }
+    }
+
     /// Texels in a metre of a surface with `normal_world` (unit length) at `p_world`, in a map of `size_texel` a side:
     /// exact for every projection. Whether the map shows the point is not asked.
     pub fn texel_density(&self, p_world: Vec3, normal_world: Vec3, size_texel: u32) -> Density {

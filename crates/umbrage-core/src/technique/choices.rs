@@ -1,4 +1,5 @@
-//! The four choices of a depth map, each a table: how it is stored, projected, biased and filtered.
+//! The five choices of a depth map, each a table: how it is stored, projected, biased and filtered, and what translucent
+//! casters do to light.
 
 use super::{Param, ParamDefault, Source};
 
@@ -49,6 +50,10 @@ const INTEL: Source =
     Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
 const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
+pub(super) const WOO: Source =
+    Source { paper: "Woo, The Shadow Depth Map Revisited, Graphics Gems III", year: 1992 };
+pub(super) const WANG_MOLNAR: Source =
+    Source { paper: "Wang and Molnar, Second-Depth Shadow Mapping", year: 1994 };
 
 choices! {
     /// How depth is kept.
@@ -240,6 +245,22 @@ choices! {
             params: &[PLANE_MARGIN],
             ..EMPTY
         };
+        /// Halfway between the nearest and the second-nearest surface.
+        Midpoint = Choice {
+            id: "midpoint",
+            label: "Midpoint",
+            summary: "the map holds the middle between nearest and second-nearest surface, by two passes of depth peeling",
+            source: Some(WOO),
+            ..EMPTY
+        };
+        /// Back faces only.
+        SecondDepth = Choice {
+            id: "second-depth",
+            label: "Second depth",
+            summary: "the map holds back faces only; casters that are not closed are drawn whole, and reported",
+            source: Some(WANG_MOLNAR),
+            ..EMPTY
+        };
     }
 }
 
@@ -292,6 +313,28 @@ choices! {
             summary: "maps from many places of an area light, blended: umbra and penumbra in their true widths",
             source: Some(BJORKE),
             params: &[VIEWS],
+            ..EMPTY
+        };
+    }
+}
+
+choices! {
+    /// What translucent casters do to light: those whose material is mixed by alpha.
+    Translucent {
+        /// All or nothing, by the texel.
+        Cut = Choice {
+            id: "cut",
+            label: "Cut",
+            summary: "a translucent caster blocks all light where its alpha is a half or more, and none elsewhere",
+            ..EMPTY
+        };
+        /// They colour it.
+        Colored = Choice {
+            id: "colored",
+            label: "Coloured",
+            summary: "translucent casters dim and tint the light: a map of colours beside that of depths, multiplied up",
+            source: Some(BJORKE),
+            modules: &["through", "colored"],
             ..EMPTY
         };
     }
@@ -518,7 +561,7 @@ const MATRIX_BIAS: Param = Param {
     cost: "none; light leaks wherever it is more than a caster's distance from its receiver",
 };
 
-/// The four choices of a map.
+/// The five choices of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Combination {
     /// How depth is kept.
@@ -529,6 +572,8 @@ pub struct Combination {
     pub bias: Bias,
     /// How texels become visibility.
     pub filter: Filter,
+    /// What translucent casters do to light.
+    pub translucent: Translucent,
 }
 
 impl Combination {
@@ -537,18 +582,31 @@ impl Combination {
         Storage::ALL.iter().flat_map(|&storage| {
             Projection::ALL.iter().flat_map(move |&projection| {
                 Bias::ALL.iter().flat_map(move |&bias| {
-                    Filter::ALL.iter().map(move |&filter| Self { storage, projection, bias, filter })
+                    Filter::ALL.iter().flat_map(move |&filter| {
+                        Translucent::ALL.iter().map(move |&translucent| Self {
+                            storage,
+                            projection,
+                            bias,
+                            filter,
+                            translucent,
+                        })
+                    })
                 })
             })
         })
     }
 
-    /// Why the four do not go together; `None` when they do.
+    /// Why the five do not go together; `None` when they do.
     pub fn objection(&self) -> Option<&'static str> {
         let warped = matches!(self.projection, Projection::Perspective | Projection::LightSpacePerspective);
         if warped && self.storage.is_color() {
             return Some(
                 "colour storages hold distance along the light's axis, and a warped map's planes are planes of depth only",
+            );
+        }
+        if self.colors_light() && matches!(self.bias, Bias::Midpoint | Bias::SecondDepth) {
+            return Some(
+                "colours end at the first opaque surface, which midpoint and second-depth maps do not hold",
             );
         }
         if self.filter == Filter::MultiView && self.projection != Projection::Fitted {
@@ -559,19 +617,33 @@ impl Combination {
         None
     }
 
-    /// The rows of the four choices.
-    pub fn rows(&self) -> [&'static Choice; 4] {
-        [self.storage.row(), self.projection.row(), self.bias.row(), self.filter.row()]
+    /// The rows of the five choices.
+    pub fn rows(&self) -> [&'static Choice; 5] {
+        [
+            self.storage.row(),
+            self.projection.row(),
+            self.bias.row(),
+            self.filter.row(),
+            self.translucent.row(),
+        ]
     }
 
-    /// The parameters of the four choices.
+    /// Is V a colour: three numbers, not one?
+    pub fn colors_light(&self) -> bool {
+        self.translucent == Translucent::Colored
+    }
+
+    /// The parameters of the five choices.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> {
         self.rows().into_iter().flat_map(|row| row.params)
     }
 
     /// Is the comparison left to the hardware's comparison sampler? It has one depth for all texels, and depth textures only.
     pub fn compares_in_hardware(&self) -> bool {
-        self.filter == Filter::Linear && !self.storage.is_color() && self.compare_module() == "compare/plain"
+        self.filter == Filter::Linear
+            && !self.storage.is_color()
+            && !self.colors_light()
+            && self.compare_module() == "compare/plain"
     }
 
     fn compare_module(&self) -> &'static str {
@@ -584,6 +656,9 @@ impl Combination {
 
     fn filter_module(&self) -> &'static str {
         match self.filter {
+            Filter::Nearest | Filter::MultiView if self.colors_light() => "filter/colored_nearest",
+            Filter::Linear if self.colors_light() => "filter/colored_linear",
+            Filter::Pcf | Filter::Kernel if self.colors_light() => "filter/colored_kernel",
             Filter::Nearest | Filter::MultiView => "filter/nearest",
             Filter::Linear if self.compares_in_hardware() => "filter/linear_hardware",
             Filter::Linear => "filter/linear",
@@ -591,7 +666,8 @@ impl Combination {
         }
     }
 
-    /// The WGSL function that filters: `umbrage_filter_...`, with the map, a sampler, the view and the texel as arguments.
+    /// The WGSL function that filters: `umbrage_filter_...`, with the map, a sampler, the view and the texel as arguments; where
+    /// light is coloured, the map of translucent casters and that of colours come after the map.
     pub fn filter_function(&self) -> String {
         self.filter_module().replacen("filter/", "umbrage_filter_", 1)
     }
@@ -618,10 +694,11 @@ impl Combination {
             Storage::Packed3 => 3,
             _ => 1,
         };
-        lookups * channels
+        // Coloured: a second map, and red, green and blue.
+        lookups * if self.colors_light() { 2 * channels + 3 } else { channels }
     }
 
-    /// The WGSL modules of the four choices.
+    /// The WGSL modules of the five choices.
     pub fn modules(&self) -> Vec<&'static str> {
         let map = match self.storage {
             Storage::Auto | Storage::Depth16 | Storage::Depth24 | Storage::Depth32Float => "map/depth",

@@ -1,12 +1,12 @@
 //! The one table of techniques: command, listing, documentation, tests, benches and uniforms all come from it.
 //!
-//! A map technique is four independent choices (storage, projection, bias, filter), each a table of its own in
+//! A map technique is five independent choices (storage, projection, bias, filter, translucent), each a table of its own in
 //! [`choices`]. A [`Technique`] names a combination; [`Settings`] is one with its parameters.
 
 pub mod choices;
 mod settings;
 
-pub use choices::{Bias, Choice, Combination, Filter, Projection, Steps, Storage};
+pub use choices::{Bias, Choice, Combination, Filter, Projection, Steps, Storage, Translucent};
 pub use settings::{SettingError, Settings};
 
 /// Where an idea was published.
@@ -87,7 +87,7 @@ pub struct Technique {
     pub family: Family,
     /// Where it was published.
     pub source: Option<Source>,
-    /// The four choices of a map.
+    /// The five choices of a map.
     pub combination: Option<Combination>,
 }
 
@@ -110,6 +110,7 @@ const LINEAR: Combination = Combination {
     projection: Projection::Fitted,
     bias: Bias::Auto,
     filter: Filter::Linear,
+    translucent: Translucent::Cut,
 };
 
 /// All techniques, in the order in which they are best explained.
@@ -187,12 +188,36 @@ pub const TECHNIQUES: &[Technique] = &[
         combination: Some(Combination { filter: Filter::MultiView, ..LINEAR }),
     },
     Technique {
+        id: "colored",
+        label: "Coloured light",
+        summary: "glass dims and tints the light that goes through it, by texture and alpha: V is a colour",
+        family: Family::Map,
+        source: Some(BJORKE),
+        combination: Some(Combination { translucent: Translucent::Colored, ..LINEAR }),
+    },
+    Technique {
         id: "matrix-bias",
         label: "Biased lookup matrix",
         summary: "the bias stands in the lookup matrix, for hardware without polygon offset: uniform, so it leaks",
         family: Family::Map,
         source: Some(EVERITT),
         combination: Some(Combination { bias: Bias::Matrix, ..LINEAR }),
+    },
+    Technique {
+        id: "midpoint",
+        label: "Midpoint map",
+        summary: "the middle between the two nearest surfaces in place of a bias: no number to set, twice the drawing",
+        family: Family::Map,
+        source: Some(choices::WOO),
+        combination: Some(Combination { bias: Bias::Midpoint, ..LINEAR }),
+    },
+    Technique {
+        id: "second-depth",
+        label: "Second-depth map",
+        summary: "back faces of closed casters in place of a bias: no number to set, no cost; open casters shadow themselves",
+        family: Family::Map,
+        source: Some(choices::WANG_MOLNAR),
+        combination: Some(Combination { bias: Bias::SecondDepth, ..LINEAR }),
     },
 ];
 

@@ -1,6 +1,6 @@
 //! A technique with its parameters, as a user asked for it.
 
-use super::choices::{Bias, Combination, Filter, Projection, Storage};
+use super::choices::{Bias, Combination, Filter, Projection, Storage, Translucent};
 use super::{Param, ParamDefault, Technique, find};
 
 /// A technique with every choice and parameter settled.
@@ -8,7 +8,7 @@ use super::{Param, ParamDefault, Technique, find};
 pub struct Settings {
     /// The row of the table that it began with.
     pub technique: &'static Technique,
-    /// The four choices, `None` without a map.
+    /// The five choices, `None` without a map.
     pub combination: Option<Combination>,
     set: Vec<(&'static str, f32)>,
 }
@@ -85,7 +85,7 @@ pub(super) fn suggest<'a>(asked: &str, known: impl Iterator<Item = &'a str>) -> 
 
 impl Settings {
     /// The keys that name a table of choices, in the order of [`Combination::rows`].
-    pub const CHOICES: [&str; 4] = ["storage", "projection", "bias", "filter"];
+    pub const CHOICES: [&str; 5] = ["storage", "projection", "bias", "filter", "translucent"];
 
     /// The technique `id` with `key=value` pairs over its defaults. Choices count before parameters, whatever their
     /// order.
@@ -171,13 +171,15 @@ impl Settings {
             "storage" => Storage::ALL.iter().map(|c| c.row().id).collect(),
             "projection" => Projection::ALL.iter().map(|c| c.row().id).collect(),
             "bias" => Bias::ALL.iter().map(|c| c.row().id).collect(),
-            _ => Filter::ALL.iter().map(|c| c.row().id).collect(),
+            "filter" => Filter::ALL.iter().map(|c| c.row().id).collect(),
+            _ => Translucent::ALL.iter().map(|c| c.row().id).collect(),
         };
         let found = match key {
             "storage" => Storage::find(value).map(|c| combination.storage = c),
             "projection" => Projection::find(value).map(|c| combination.projection = c),
             "bias" => Bias::find(value).map(|c| combination.bias = c),
-            _ => Filter::find(value).map(|c| combination.filter = c),
+            "filter" => Filter::find(value).map(|c| combination.filter = c),
+            _ => Translucent::find(value).map(|c| combination.translucent = c),
         };
         found.ok_or_else(|| SettingError::UnknownChoice {
             key: key.to_owned(),

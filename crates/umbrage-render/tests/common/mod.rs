@@ -46,7 +46,7 @@ pub fn shoot(gpu: &Gpu, scene: &Scene, settings: Settings, view: View, side: u32
 pub fn shoot_with(gpu: &Gpu, scene: &Scene, side: u32, options: RenderOptions) -> Shot {
     let options = RenderOptions { size: glam::UVec2::splat(side), ..options };
     let view = options.view;
-    let renderer = Renderer::new(gpu, scene, &scene.cameras[0].camera, options).expect("a renderer");
+    let mut renderer = Renderer::new(gpu, scene, &scene.cameras[0].camera, options).expect("a renderer");
     renderer.frame(Measure::Frame).expect("a frame");
     let v = if view == View::Visibility { renderer.visibility().expect("V") } else { Vec::new() };
     Shot { side, rgba: renderer.picture().expect("a picture"), v }

@@ -89,3 +89,41 @@ pub fn cut_out(alpha: AlphaMode) -> Scene {
     let sheet = sheet(Vec3::new(0.0, 1.0, 0.0), Vec3::X, Vec3::NEG_Z, 0);
     over_floor(vec![material], vec![checker(64, 0)], vec![sheet], &[(0, Mat4::IDENTITY)])
 }
+
+/// Panes of coloured glass over the floor: a red and a green one that overlap in the light, the green one with a picture of squares;
+/// a violet one above a part of an opaque sheet, a blue one wholly in the sheet's shadow, and a yellow one half in it.
+pub fn panes() -> Scene {
+    let glass = |color: [f32; 4]| Material {
+        alpha: AlphaMode::Blend,
+        double_sided: true,
+        base_color: Vec4::from(color),
+        ..Material::default()
+    };
+    let squares = TextureRef {
+        image: 0,
+        wrap: [Wrap::Repeat; 2],
+        linear: false,
+        uv_set: 0,
+        uv_from_texcoord: Affine2::IDENTITY,
+    };
+    let materials = vec![
+        glass([1.0, 0.1, 0.1, 0.6]),
+        Material { base_color_texture: Some(squares), ..glass([0.1, 1.0, 0.2, 0.5]) },
+        glass([0.1, 0.2, 1.0, 0.5]),
+        glass([1.0, 0.9, 0.1, 0.4]),
+        glass([0.8, 0.2, 1.0, 0.5]),
+        Material::default(),
+    ];
+    let flat =
+        |center: Vec3, half: f32, material| sheet(center, Vec3::X * half, Vec3::NEG_Z * half, material);
+    let meshes = vec![
+        flat(Vec3::new(-1.3, 1.0, 0.6), 0.8, 0),
+        flat(Vec3::new(-0.9, 1.5, 0.2), 0.8, 1),
+        flat(Vec3::new(1.3, 0.4, -0.6), 0.35, 2),
+        flat(Vec3::new(1.6, 0.8, 0.6), 0.6, 3),
+        flat(Vec3::new(0.5, 2.0, -0.3), 0.4, 4),
+        flat(Vec3::new(0.9, 1.5, -0.2), 0.8, 5),
+    ];
+    let placed: Vec<_> = (0..meshes.len()).map(|mesh| (mesh, Mat4::IDENTITY)).collect();
+    over_floor(materials, vec![checker(64, 40)], meshes, &placed)
+}
