@@ -26,6 +26,11 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// Is it an engine that draws back faces into its maps?
+    pub fn is_engine_of_backs(&self) -> bool {
+        self.group == Group::Engine && self.needs == Some("second-depth")
+    }
+
     pub fn spec(&self, kind: Kind) -> &'static str {
         if kind == Kind::Point { self.point.unwrap_or(self.spot) } else { self.spot }
     }
