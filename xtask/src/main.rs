@@ -3,6 +3,7 @@
 //! Exit status: 0 done, 1 failed, 2 wrong use.
 
 mod bench;
+mod bias;
 mod bless;
 mod checks;
 mod demo;
@@ -64,6 +65,12 @@ const TASKS: &[Task] = &[
         takes: "",
         summary: "measure the techniques on the built-in scenes and write docs/guide.md",
         run: guide::run,
+    },
+    Task {
+        name: "bias",
+        takes: "",
+        summary: "measure the biases, and those of engines, and write docs/bias.md",
+        run: bias::run,
     },
     Task {
         name: "setup",

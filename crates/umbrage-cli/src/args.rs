@@ -4,7 +4,7 @@ mod bench;
 
 pub use bench::{BenchArgs, BenchCommand, ThreadedArgs};
 
-use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair};
+use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair, TechniqueSpec};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use glam::{UVec2, Vec3};
@@ -309,6 +309,8 @@ const COMPARE_EXAMPLES: &str = "Examples:
   umbrage compare
       every technique on the built-in scene, into the folder report: open report/index.html
   umbrage compare model.glb --ground --techniques hard,linear --set map_size=512 -o small-maps
+  umbrage compare model.glb -t linear:bias=slope,linear:bias=auto,pcf:width=9 --set map_size=1024 -o biases
+      the same technique with other settings, side by side
   umbrage compare builtin:columns --path frames=8,turn=4
       along a camera's path: flicker, too
   umbrage compare builtin:torus --light rect=0.5:0.5,position=-3:5:4 --samples 256 --json
@@ -328,10 +330,13 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub quality: QualityArgs,
 
-    /// Which techniques, by commas, or all
-    #[arg(short, long, value_name = "ID,...", default_value = "all", value_delimiter = ',',
-          value_parser = technique_ids(&["all"]), help_heading = "Shadow")]
-    pub techniques: Vec<String>,
+    /// Which techniques, by commas, or all; each may be followed by settings of its own, as ID:KEY=VALUE:KEY=VALUE
+    ///
+    /// What a technique has of its own goes before --set. The same technique may stand there several times, with other
+    /// settings.
+    #[arg(short, long, value_name = "ID[:KEY=VALUE]...,...", default_value = "all", value_delimiter = ',',
+          value_parser = TechniqueParser, help_heading = "Shadow")]
+    pub techniques: Vec<TechniqueSpec>,
 
     /// Change a choice or parameter in every technique that has it; one at least must
     #[arg(short, long, value_name = "KEY=VALUE", value_parser = specs::pair, help_heading = "Shadow")]
@@ -410,6 +415,30 @@ pub struct DoctorArgs {
 fn technique_ids(more: &[&'static str]) -> PossibleValuesParser {
     let more = more.iter().map(|id| PossibleValue::new(*id).help("every technique"));
     PossibleValuesParser::new(TECHNIQUES.iter().map(|t| PossibleValue::new(t.id).help(t.summary)).chain(more))
+}
+
+/// Reads `ID:KEY=VALUE`, and tells help and completions the ids.
+#[derive(Clone, Debug)]
+struct TechniqueParser;
+
+impl TypedValueParser for TechniqueParser {
+    type Value = TechniqueSpec;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<Self::Value, clap::Error> {
+        // The words for what is wrong are those of all our other options.
+        let parser: fn(&str) -> Result<TechniqueSpec, String> = specs::technique;
+        parser.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let ids = TECHNIQUES.iter().map(|t| PossibleValue::new(t.id).help(t.summary));
+        Some(Box::new(ids.chain([PossibleValue::new("all").help("every technique")])))
+    }
 }
 
 fn view_ids() -> PossibleValuesParser {

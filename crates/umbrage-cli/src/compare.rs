@@ -6,7 +6,7 @@ use crate::fault::{Fault, say, tell};
 use crate::json::{self, Machine, SceneJson};
 use crate::progress::Progress;
 use crate::setup::{self, Stage};
-use crate::specs::{Pair, PathSpec};
+use crate::specs::{Pair, PathSpec, TechniqueSpec};
 use crate::text;
 use crate::truth::quality;
 use glam::{Mat3, Vec3};
@@ -40,8 +40,8 @@ struct Report<'a> {
 /// # Errors
 /// Wrong use before anything is loaded, failures as they come. Nothing is left behind.
 pub fn run(args: &CompareArgs) -> Result<(), Fault> {
-    let ids = techniques(&args.techniques);
-    all_settings(&ids, &args.set, None)?;
+    let specs = techniques(&args.techniques);
+    all_settings(&specs, &args.set, None)?;
     let folder = args.output.clone().or_else(|| (!args.json).then(|| PathBuf::from(FOLDER)));
     if let Some(folder) = &folder {
         report::check(folder).map_err(Fault::Failed)?;
@@ -50,7 +50,7 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
     if stage.scene.lights.is_empty() {
         return Err(Fault::WrongUse("there is no light to measure".into()));
     }
-    let techniques = all_settings(&ids, &args.set, stage.map_size)?;
+    let techniques = all_settings(&specs, &args.set, stage.map_size)?;
     let plan = Plan {
         cameras: cameras(args, &stage)?,
         light_numbers: stage.light_numbers.clone(),
@@ -63,8 +63,9 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
     let progress = Progress::new()?;
     let mut measured = compare(&gpu, &stage.scene, &plan, &|label: &str, share| progress.at(label, share))?;
     drop(progress);
-    for row in &mut measured.rows {
-        row.command = command_of(row, args, &plan, stage.light_numbers.len());
+    // Rows come by light and camera, and there in the order of the techniques.
+    for (row, spec) in measured.rows.iter_mut().zip(specs.iter().cycle()) {
+        row.command = command_of(row, spec, args, &plan, stage.light_numbers.len());
     }
     let mut warnings = stage.scene.warnings.clone();
     warnings.append(&mut measured.warnings);
@@ -89,39 +90,61 @@ pub fn run(args: &CompareArgs) -> Result<(), Fault> {
 }
 
 /// As asked for, each once.
-fn techniques(asked: &[String]) -> Vec<&str> {
-    let mut ids = Vec::new();
-    for id in asked {
-        let more: Vec<&str> =
-            if id == "all" { TECHNIQUES.iter().map(|t| t.id).collect() } else { vec![id.as_str()] };
-        more.into_iter().for_each(|id| {
-            if !ids.contains(&id) {
-                ids.push(id);
+fn techniques(asked: &[TechniqueSpec]) -> Vec<TechniqueSpec> {
+    let mut specs = Vec::new();
+    for spec in asked {
+        let named = |id: &str| TechniqueSpec { id: id.to_owned(), set: spec.set.clone() };
+        let more: Vec<TechniqueSpec> = if spec.id == "all" {
+            TECHNIQUES.iter().map(|t| named(t.id)).collect()
+        } else {
+            vec![spec.clone()]
+        };
+        more.into_iter().for_each(|spec| {
+            if !specs.contains(&spec) {
+                specs.push(spec);
             }
         });
     }
-    ids
+    specs
 }
 
-/// Every technique with what it has of `set`. Each pair must be in one of them.
-fn all_settings(ids: &[&str], set: &[Pair], map_size: Option<u32>) -> Result<Vec<Settings>, Fault> {
+/// What of `set` a technique takes, and then what it has of its own, which goes before.
+fn taken_by(spec: &TechniqueSpec, set: &[Pair]) -> Result<Vec<Pair>, Fault> {
+    let plain = Settings::new(&spec.id, [])?;
+    let is_choice = |pair: &Pair| Settings::CHOICES.contains(&pair.key.as_str());
+    let is_own = |pair: &Pair| spec.set.iter().any(|own| own.key == pair.key);
+    let shared = set.iter().filter(|pair| !is_own(pair));
+    let choices: Vec<Pair> = shared
+        .clone()
+        .filter(|pair| plain.combination.is_some() && is_choice(pair))
+        .chain(spec.set.iter().filter(|pair| is_choice(pair)))
+        .cloned()
+        .collect();
+    // Which parameters there are depends on the choices.
+    let chosen = setup::settings(&spec.id, &choices, None)?;
+    let has = |pair: &&Pair| choices.contains(pair) || chosen.value(&pair.key).is_some();
+    Ok(shared.filter(has).chain(&spec.set).cloned().collect())
+}
+
+/// Every technique with its own settings and with what it has of `set`. Each pair of `set` must be a setting of one of them.
+fn all_settings(
+    specs: &[TechniqueSpec],
+    set: &[Pair],
+    map_size: Option<u32>,
+) -> Result<Vec<Settings>, Fault> {
     let mut taken = vec![false; set.len()];
-    let settings = ids.iter().map(|id| {
-        let plain = Settings::new(id, [])?;
-        let is_choice = |pair: &Pair| Settings::CHOICES.contains(&pair.key.as_str());
-        let choices: Vec<Pair> =
-            set.iter().filter(|pair| is_choice(pair) && plain.combination.is_some()).cloned().collect();
-        // Which parameters there are depends on the choices.
-        let chosen = setup::settings(id, &choices, None)?;
-        let has = |pair: &Pair| choices.contains(pair) || chosen.value(&pair.key).is_some();
-        let own: Vec<Pair> = set.iter().filter(|pair| has(pair)).cloned().collect();
-        set.iter().zip(&mut taken).for_each(|(pair, taken)| *taken |= has(pair));
-        setup::settings(id, &own, map_size)
-    });
-    let settings = settings.collect::<Result<Vec<_>, Fault>>()?;
+    let mut settings = Vec::with_capacity(specs.len());
+    for spec in specs {
+        let pairs = taken_by(spec, set)?;
+        set.iter().zip(&mut taken).for_each(|(pair, taken)| {
+            *taken |= pairs.iter().any(|other| other.key == pair.key);
+        });
+        settings.push(setup::settings(&spec.id, &pairs, map_size)?);
+    }
     if let Some((pair, _)) = set.iter().zip(&taken).find(|(_, taken)| !**taken) {
         // The same words as for a single technique, with what it has and what is near.
-        setup::settings(ids.last().unwrap_or(&""), std::slice::from_ref(pair), None)?;
+        let last = specs.last().map_or("", |spec| spec.id.as_str());
+        setup::settings(last, std::slice::from_ref(pair), None)?;
     }
     Ok(settings)
 }
@@ -164,12 +187,11 @@ fn frames_of(path: &PathSpec, camera: &Camera, middle: Vec3) -> Vec<Camera> {
 }
 
 /// What draws a row's picture again.
-fn command_of(row: &Row, args: &CompareArgs, plan: &Plan, lights: usize) -> String {
+fn command_of(row: &Row, spec: &TechniqueSpec, args: &CompareArgs, plan: &Plan, lights: usize) -> String {
     let mut words: Vec<String> = vec!["umbrage".into(), "render".into()];
     words.extend(again::scene_words());
     words.extend(["--technique".to_owned(), row.technique.to_owned()]);
-    let has = |pair: &&Pair| row.settings.value(&pair.key).is_some() || row.params.contains_key(&pair.key);
-    for pair in args.set.iter().filter(has) {
+    for pair in taken_by(spec, &args.set).unwrap_or_default() {
         words.extend(["--set".to_owned(), format!("{}={}", pair.key, pair.value)]);
     }
     if lights > 1 || !args.scene.lights.is_empty() {
@@ -240,6 +262,7 @@ fn describe(report: &Report<'_>, measured: &Comparison) -> String {
         "edge",
         "band %",
         "gap m",
+        "gap texels",
         "penumbra",
         "flicker",
         "flip",
@@ -260,6 +283,7 @@ fn describe(report: &Report<'_>, measured: &Comparison) -> String {
                 format!("{:.4}", row.errors.edge),
                 percent(row.errors.band),
                 optional(row.gap_m),
+                row.gap_texel.map_or_else(|| "-".to_owned(), |x| format!("{x:.2}")),
                 optional(row.penumbra),
                 optional(row.flicker),
                 format!("{:.4}", row.flip),
@@ -286,17 +310,49 @@ mod tests {
 
     #[test]
     fn what_is_set_goes_where_it_fits() {
-        let ids = ["unshadowed", "linear", "matrix-bias"];
-        let set = [pair("map_size", "64"), pair("matrix_bias", "0.01")];
+        let ids = ["unshadowed", "linear", "matrix-bias"].map(spec);
+        let set = [pair("map_size", "64"), pair("matrix_bias", "0.25")];
         let settings = all_settings(&ids, &set, None).expect("valid");
         let value = |i: usize, name: &str| settings[i].value(name);
         assert_eq!(
             [value(0, "map_size"), value(1, "map_size"), value(2, "map_size")],
             [None, Some(64.0), Some(64.0)]
         );
-        assert_eq!([value(1, "matrix_bias"), value(2, "matrix_bias")], [None, Some(0.01)]);
+        assert_eq!([value(1, "matrix_bias"), value(2, "matrix_bias")], [None, Some(0.25)]);
         assert!(all_settings(&ids, &[pair("mapsize", "64")], None).is_err());
         assert!(all_settings(&ids, &[pair("map_size", "0")], None).is_err());
+    }
+
+    fn spec(text: &str) -> TechniqueSpec {
+        crate::specs::technique(text).expect("valid")
+    }
+
+    #[test]
+    fn a_technique_has_settings_of_its_own() {
+        let specs = ["linear", "linear:bias=slope:map_size=32", "pcf:width=9"].map(spec);
+        assert_eq!(techniques(&[specs.as_slice(), &specs].concat()), specs);
+        let set = [pair("map_size", "64"), pair("bias", "normal"), pair("normal_offset", "2")];
+        let settings = all_settings(&specs, &set, None).expect("valid");
+        let value = |name: &str| [0, 1, 2].map(|i: usize| settings[i].value(name));
+        assert_eq!(value("map_size"), [Some(64.0), Some(32.0), Some(64.0)]);
+        assert_eq!(value("normal_offset"), [Some(2.0), None, Some(2.0)]);
+        assert_eq!(value("width"), [None, None, Some(9.0)]);
+        let refused = |text: &str| match all_settings(&[spec(text)], &[], None) {
+            Err(Fault::WrongUse(message)) => message,
+            other => panic!("{text} must be wrong use, not {other:?}"),
+        };
+        assert!(refused("linear:widht=3").contains("`linear` has no setting `widht`"));
+        assert!(refused("pcf:width=99").contains("from 1 to 17"));
+        assert!(refused("pcf:width=3:width=5").contains("twice"));
+        let unread = |text: &str| crate::specs::technique(text).expect_err("must be refused");
+        assert!(unread("liner:bias=none").contains("did you mean `linear`?"));
+        assert!(
+            unread("linear:bias").contains("is not key=value") && unread("linear:").contains("key=value")
+        );
+        assert!(
+            all_settings(&techniques(&[spec("all:map_size=64")]), &[], None).is_err(),
+            "unshadowed has no map"
+        );
     }
 
     #[test]

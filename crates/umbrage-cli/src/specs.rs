@@ -3,10 +3,11 @@
 use crate::fault::suggest;
 use glam::{UVec2, Vec3};
 use std::path::PathBuf;
+use umbrage_render::umbrage::core::technique::find;
 use umbrage_render::umbrage::core::{Light, LightKind, LightShape};
 
 /// `key=value`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pair {
     /// Left of the first `=`.
     pub key: String,
@@ -143,6 +144,35 @@ pub fn pair(text: &str) -> Result<Pair, String> {
         }
         _ => Err("write key=value, for example map_size=1024".into()),
     }
+}
+
+/// A technique with settings of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TechniqueSpec {
+    /// Its name, or `all`.
+    pub id: String,
+    /// What it has of its own.
+    pub set: Vec<Pair>,
+}
+
+/// `ID[:KEY=VALUE...]`. Whether a technique has such a setting is asked when all choices are known.
+pub fn technique(text: &str) -> Result<TechniqueSpec, String> {
+    let mut pieces = text.split(':');
+    let id = pieces.next().unwrap_or("").trim();
+    if id != "all" {
+        find(id).map_err(|e| e.to_string())?;
+    }
+    let set = pieces
+        .map(|piece| {
+            pair(piece).map_err(|_| {
+                format!(
+                    "`{}` is not key=value; write for example linear:bias=slope:map_size=512",
+                    short(piece)
+                )
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(TechniqueSpec { id: id.to_owned(), set })
 }
 
 /// `FILE:CASE`

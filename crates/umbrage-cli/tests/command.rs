@@ -162,6 +162,9 @@ fn wrong_use_names_what_was_meant_before_anything_is_loaded() {
         (&["render", "--light", "kind=spot", "--lights-from", "a.json:A"], &["cannot be used with"]),
         (&["render", "--sise", "3x3"], &["--sise", "--size"]),
         (&["bench", "--techniques", "unshadowed,hrad"], &["hrad", "`hard`"]),
+        (&["compare", "--techniques", "unshadowed,hrad:bias=none"], &["hrad", "`hard`"]),
+        (&["compare", "--techniques", "hard:bias"], &["key=value", "linear:bias=slope"]),
+        (&["compare", "--techniques", "hard:bais=none"], &["`bais`", "`bias`"]),
         (
             &["bench", "--techniques", "linear,matrix-bias", "--set", "matrix_bias=0.1"],
             &["`linear` has no setting"],

@@ -3,7 +3,7 @@
 use crate::fit::ShadowView;
 use crate::technique::{Settings, Storage};
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec3, Vec4};
 
 /// Mirrors `UmbrageView` of `wgsl/view.wgsl`; see there for what each field means.
 #[repr(C)]
@@ -33,12 +33,14 @@ pub struct GpuView {
     pub width_texel: f32,
     /// Texels.
     pub margin_texel: f32,
-    /// Texels.
-    pub normal_texel: f32,
+    /// Metres.
+    pub depth_m: f32,
     /// World space.
     pub origin: Vec3,
     /// 1 or 0.
     pub warped: u32,
+    /// Texels.
+    pub offset_texel: Vec4,
 }
 
 impl GpuView {
@@ -59,11 +61,25 @@ impl GpuView {
             step_share: steps.share,
             width_texel: settings.value("width").unwrap_or(1.0),
             margin_texel: settings.value("plane_margin").unwrap_or(0.0),
-            normal_texel: settings.value("normal_offset").unwrap_or(0.0),
+            depth_m: settings.value("depth_m").unwrap_or(0.0),
             origin: view.light_from_world.inverse().w_axis.truncate(),
             warped: u32::from(view.is_warped()),
+            offset_texel: offset_texel(view, settings),
         }
     }
+}
+
+/// How far receivers are moved, see `wgsl/view.wgsl`.
+fn offset_texel(view: &ShadowView, settings: &Settings) -> Vec4 {
+    let value = |name| settings.value(name).unwrap_or(0.0);
+    // A perspective map's texel is `texel_m` wide for each metre of distance, so a share of the distance is a number of texels.
+    let by_distance = if view.perspective { value("depth_share") / view.texel_m } else { 0.0 };
+    Vec4::new(
+        value("normal_offset"),
+        value("normal_always"),
+        value("normal_tilt"),
+        value("depth_texel") + by_distance,
+    )
 }
 
 #[cfg(test)]
@@ -100,9 +116,10 @@ mod tests {
             ("step_share", offset_of!(GpuView, step_share)),
             ("width_texel", offset_of!(GpuView, width_texel)),
             ("margin_texel", offset_of!(GpuView, margin_texel)),
-            ("normal_texel", offset_of!(GpuView, normal_texel)),
+            ("depth_m", offset_of!(GpuView, depth_m)),
             ("origin", offset_of!(GpuView, origin)),
             ("warped", offset_of!(GpuView, warped)),
+            ("offset_texel", offset_of!(GpuView, offset_texel)),
         ];
         assert_eq!(shader, mirror);
         assert_eq!(span as usize, size_of::<GpuView>());

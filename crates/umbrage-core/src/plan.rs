@@ -195,10 +195,13 @@ fn polygon_offset(settings: &Settings, bias: Bias) -> PolygonOffset {
         // Every caster is carried on by 3/4 of a texel along both axes (`UMBRAGE_NEAR`), and the rasteriser's slope is the larger
         // of the two.
         Bias::Auto => PolygonOffset { constant: 0, slope: DEPTH.away() * 1.5 },
-        Bias::Constant | Bias::Slope | Bias::Normal => PolygonOffset {
-            constant: (DEPTH.away() * settings.value("constant").unwrap_or(0.0)) as i32,
-            slope: DEPTH.away() * settings.value("slope_factor").unwrap_or(0.0),
-        },
+        Bias::Constant | Bias::Slope | Bias::Normal => {
+            let value = |name| settings.value(name);
+            PolygonOffset {
+                constant: (DEPTH.away() * value("constant").unwrap_or(0.0)) as i32,
+                slope: DEPTH.away() * value("slope_factor").or(value("polygon_slope")).unwrap_or(0.0),
+            }
+        }
     }
 }
 
@@ -321,5 +324,8 @@ mod tests {
         assert_eq!(offset("matrix"), PolygonOffset::default());
         assert_eq!(offset("constant"), PolygonOffset { constant: -4, slope: 0.0 });
         assert_eq!(offset("slope"), PolygonOffset { constant: -4, slope: -2.0 });
+        assert_eq!(offset("normal"), PolygonOffset { constant: -4, slope: 0.0 });
+        let sloped = Settings::new("linear", [("bias", "normal"), ("polygon_slope", "2.5")]).expect("valid");
+        assert_eq!(plan(&sloped)[0].offset, PolygonOffset { constant: -4, slope: -2.5 });
     }
 }

@@ -23,12 +23,15 @@ struct UmbrageView {
     width_texel: f32,
     // Margin of the receiver's plane, widths of a texel (see `compare/plane`).
     margin_texel: f32,
-    // How far a receiver is moved along its normal, widths of a texel (see `bias/normal`).
-    normal_texel: f32,
+    // How far a receiver is moved towards the light, metres (see `bias/normal`).
+    depth_m: f32,
     // Where the light is; of no use for parallel light.
     origin: vec3f,
     // 1: the map is warped towards the eye, so depth does not tell distance by near and far alone.
     warped: u32,
+    // How far a receiver is moved, widths of a texel (see `bias/normal`): along its normal times the sine of normal and light,
+    // along its normal at any angle, along its normal times 1 - their cosine, and towards the light.
+    offset_texel: vec4f,
 }
 
 // Which way stored depth grows: 1 away from the light, -1 towards it (reversed). `umbrage_core::DEPTH` says the same, and

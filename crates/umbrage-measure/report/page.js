@@ -57,6 +57,7 @@
     { key: "edge", name: "edge", unit: "band %", group: "Error against truth", format: ratio4, small: (r) => (known(r.band) ? percent(r.band) : null), define: "Mean |V − V*| in the edge band; beneath it, the band’s share of receivers." },
     { key: "gap_m", name: "gap", group: "Error against truth", define: "Greatest distance from where a caster touches its receiver to where its shadow begins.",
       unit: (values) => (Math.max(0, ...values) < 1 ? "mm" : "m"), format: (values) => (Math.max(0, ...values) < 1 ? column(3, 2, 1000) : column(4, 3))(values) },
+    { key: "gap_texel", name: "gap", unit: "texels", group: "Error against truth", format: always((v) => fixed(v, 2)), define: "The same in widths of a map's texel there, across the light." },
     { key: "penumbra", name: "penumbra", unit: "× right", group: "Error against truth", format: always((v) => fixed(v, 2)), wrong: (v) => Math.abs(v - 1), define: "Width of soft edges over the width that similar triangles give: 1 is right." },
     { key: "flicker", name: "flicker", group: "Error against truth", format: ratio4, define: "Mean change of V between frames of a camera path, where truth does not change." },
     { key: "flip", name: "FLIP", group: "Error against truth", format: ratio4, define: "Perceptual difference of the final picture, 0 same to 1 (Andersson et al. 2020)." },

@@ -78,6 +78,8 @@ pub struct Row {
     pub errors: Errors,
     /// From a contact to where its shadow begins, metres.
     pub gap_m: Option<f64>,
+    /// The same in widths of a texel there, across the light; nothing without a map.
+    pub gap_texel: Option<f64>,
     /// Width of soft edges over that of similar triangles.
     pub penumbra: Option<f64>,
     /// Change of V between frames where the truth does not change.
@@ -121,6 +123,7 @@ pub struct Comparison {
 struct Running {
     errors: Vec<Errors>,
     gaps_m: Vec<f64>,
+    gaps_texel: Vec<f64>,
     penumbrae: Vec<f64>,
     flickers: Vec<f64>,
     last_v: Vec<Vec3>,
@@ -209,6 +212,8 @@ fn measure_group(
         made.truth.excluded_pixels += found.excluded_pixels;
         let scene = Shot { gpu, scene: alone, camera, options: &plan.options };
         let reference = (frame == shown).then(|| scene.of_truth(&truth)).transpose()?;
+        // One for all techniques: what costs time is the making.
+        let mut bare = (frame == shown).then(|| scene.renderer(&unshadowed()?, View::Final)).transpose()?;
         for (i, settings) in plan.techniques.iter().enumerate() {
             let label = format!("measuring {}", settings.technique.id);
             progress_to(progress, &label, (done + 1 + i) as f32)?;
@@ -217,13 +222,14 @@ fn measure_group(
             let so_far = &mut running[i];
             so_far.errors.push(errors);
             so_far.gaps_m.extend(shape.gap_m);
+            so_far.gaps_texel.extend(shape.gap_texel);
             so_far.penumbrae.extend(shape.penumbra);
             if let Some(last) = &last {
                 let frames = [frame_of(last, &so_far.last_v), frame_of(&truth, &v.v)];
                 so_far.flickers.extend(flicker(&frames));
             }
-            if let Some(reference) = &reference {
-                made.rows.push(row(&scene, settings, &truth, &v.v, reference, at, plan.frames)?);
+            if let (Some(reference), Some(bare)) = (&reference, &mut bare) {
+                made.rows.push(row(&scene, settings, &truth, &v.v, reference, bare, at, plan.frames)?);
             }
             so_far.last_v = v.v;
         }
@@ -252,6 +258,7 @@ impl Running {
     fn put(&self, row: &mut Row) {
         row.errors = Errors::mean(&self.errors);
         row.gap_m = self.gaps_m.iter().copied().reduce(f64::max);
+        row.gap_texel = self.gaps_texel.iter().copied().reduce(f64::max);
         let average = |list: &[f64]| (!list.is_empty()).then(|| list.iter().sum::<f64>() / list.len() as f64);
         row.penumbra = average(&self.penumbrae);
         row.flicker = average(&self.flickers);
@@ -330,18 +337,22 @@ fn png(truth: &ViewTruth, rgba: &[u8]) -> Result<Vec<u8>, MeasureError> {
 }
 
 /// A row with its pictures and costs; errors over all frames, and names, are put in later.
+#[allow(
+    clippy::too_many_arguments,
+    reason = "a row is made of all that was found out, and it has one caller"
+)]
 fn row(
     shot: &Shot<'_>,
     settings: &Settings,
     truth: &ViewTruth,
     v: &[Vec3],
     reference: &[u8],
+    bare: &mut Renderer<'_>,
     at: &At<'_>,
     frames: u32,
 ) -> Result<Row, MeasureError> {
     let mut with = shot.renderer(settings, View::Final)?;
-    let mut without = shot.renderer(&unshadowed()?, View::Final)?;
-    let cost = Cost::measure(&mut with, &mut without, settings, frames)?;
+    let cost = Cost::measure(&mut with, bare, settings, frames)?;
     let picture = with.picture()?;
     let size = truth.size();
     let heat = heat(size, reference, truth.judged.truth(), v, truth.judged.receivers(), &truth.excluded);
@@ -356,6 +367,7 @@ fn row(
         params: params(settings),
         errors: Errors::default(),
         gap_m: None,
+        gap_texel: None,
         penumbra: None,
         flicker: None,
         flip: flip(reference, &picture, size.x, size.y),

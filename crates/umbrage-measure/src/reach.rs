@@ -22,6 +22,11 @@ impl Reach {
         Self { maps, texels: f64::from(filter_texel) + 1.0 }
     }
 
+    /// Is there any map?
+    pub fn has_map(&self) -> bool {
+        !self.maps.is_empty()
+    }
+
     fn map_of(&self, p_world: DVec3) -> Option<&Raster> {
         let off_middle = |view: &ShadowView| {
             let clip = view.clip_from_world().as_dmat4() * p_world.extend(1.0);
@@ -48,11 +53,17 @@ impl Reach {
         surfaces.seen.iter().map(reach).collect()
     }
 
+    /// Width of a texel at a place, across the ray of light `way`, where it is widest, metres; `None` without a map, and where a
+    /// map has no finite width.
+    pub fn texel_m(&self, p_world: DVec3, way: DVec3) -> Option<f64> {
+        let map = self.map_of(p_world)?;
+        let texel_m = 1.0 / texels_per_metre(map, p_world.as_vec3(), way.as_vec3()).least;
+        (texel_m.is_finite() && texel_m > 0.0).then_some(texel_m)
+    }
+
     /// The reach around a surface, across the ray of light `way`, metres; 0 without a map.
     pub fn across_light_m(&self, p_world: DVec3, way: DVec3) -> f64 {
-        let Some(map) = self.map_of(p_world) else { return 0.0 };
-        let reach_m = self.texels / texels_per_metre(map, p_world.as_vec3(), way.as_vec3()).least;
-        if reach_m.is_finite() { reach_m } else { 0.0 }
+        self.texel_m(p_world, way).map_or(0.0, |texel_m| self.texels * texel_m)
     }
 }
 
@@ -88,5 +99,17 @@ mod tests {
         let (wide, _) = reach(0.3, 3.0);
         assert!((wide - 2.0 * low).abs() < 1e-3 * wide, "{wide} {low}");
         assert!(reach(0.0, 1.0).0 > 1e5);
+    }
+
+    #[test]
+    fn a_texel_is_as_wide_across_the_light_as_its_view_says() {
+        let sun =
+            Light { kind: LightKind::Directional, ..Light::default() }.aimed(Vec3::Y * 30.0, Vec3::ZERO);
+        let bounds = [Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) }];
+        let view =
+            fit(&sun, &bounds, &FitOptions { size_texel: 4, ..FitOptions::default() }).expect("a view");
+        let found = Reach::new(&[view], 4, 3.0).texel_m(DVec3::ZERO, DVec3::Y).expect("a map");
+        assert!((found - f64::from(view.texel_m)).abs() < 1e-4 * found, "{found} {}", view.texel_m);
+        assert_eq!(Reach::new(&[], 0, 0.0).texel_m(DVec3::ZERO, DVec3::Y), None);
     }
 }

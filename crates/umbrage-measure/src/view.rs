@@ -74,6 +74,8 @@ pub struct ViewTruth {
 pub struct Shape {
     /// See [`Contacts::gap_m`].
     pub gap_m: Option<f64>,
+    /// The same in widths of a texel there, across the light.
+    pub gap_texel: Option<f64>,
     /// See [`Edges::ratio`].
     pub penumbra: Option<f64>,
 }
@@ -161,7 +163,17 @@ impl ViewTruth {
         hidden.iter().for_each(|pixel| reach_px[*pixel] = f32::INFINITY);
         let errors = Errors { hidden_pixels: hidden.len(), ..self.judged.errors(v, &reach_px) };
         let gap_m = self.contacts.gap_m(&self.judged, v, &reach_px);
-        (errors, Shape { gap_m, penumbra: self.edges.ratio(v) })
+        let emitter = Emitter::new(light);
+        let texel_m = |pixel: usize| {
+            let seen = self.surfaces.seen[pixel].as_ref();
+            seen.and_then(|seen| reach.texel_m(seen.p_world, emitter.center(seen.p_world).way))
+        };
+        // Where there is no map there is no texel.
+        let gap_texel = self
+            .contacts
+            .gap(&self.judged, v, &reach_px, |pixel| texel_m(pixel).unwrap_or(f64::INFINITY))
+            .filter(|_| reach.has_map());
+        (errors, Shape { gap_m, gap_texel, penumbra: self.edges.ratio(v) })
     }
 
     /// The wrong pixels that have an edge within reach which the picture does not show.

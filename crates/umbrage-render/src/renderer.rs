@@ -93,21 +93,7 @@ impl<'a> Renderer<'a> {
         options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
         options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
-        let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
-        let format = choose_format(storage, |format| gpu.usages_of(format))?;
-        let settled = options.settings.combination.map(|c| Combination { storage: format.storage, ..c });
-        if let Some(reason) = settled.and_then(|combination| combination.objection()) {
-            return Err(RenderError::View(format!(
-                "this adapter's best storage for maps is {}, and that does not go with the rest: {reason}",
-                format.storage.row().id
-            )));
-        }
-        if options.view == View::Channels && !format.storage.is_color() {
-            return Err(RenderError::View(format!(
-                "the view `channels` shows a colour target, and the map is {}; set storage=r32f or storage=packed3",
-                format.storage.row().id
-            )));
-        }
+        let format = settled_format(gpu, &options)?;
         let most_views = most_views(scene, &options);
         let color_maps = options.settings.combination.is_some() && format.storage.is_color();
         let layouts = Layouts::new(&gpu.device, color_maps, most_views);
@@ -321,6 +307,26 @@ fn make_casting(
         _ => None,
     };
     Ok(Some(Casting { peeled: peel_pass.map(peel).transpose()?, pass, pipelines, translucent }))
+}
+
+/// The format of the maps, when it goes with all else that was asked for.
+fn settled_format(gpu: &Gpu, options: &RenderOptions) -> Result<ChosenFormat, RenderError> {
+    let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
+    let format = choose_format(storage, |format| gpu.usages_of(format))?;
+    let settled = options.settings.combination.map(|c| Combination { storage: format.storage, ..c });
+    if let Some(reason) = settled.and_then(|combination| combination.objection()) {
+        return Err(RenderError::View(format!(
+            "this adapter's best storage for maps is {}, and that does not go with the rest: {reason}",
+            format.storage.row().id
+        )));
+    }
+    if options.view == View::Channels && !format.storage.is_color() {
+        return Err(RenderError::View(format!(
+            "the view `channels` shows a colour target, and the map is {}; set storage=r32f or storage=packed3",
+            format.storage.row().id
+        )));
+    }
+    Ok(format)
 }
 
 /// How many views the lights of a scene may have.

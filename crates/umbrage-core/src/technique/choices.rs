@@ -222,9 +222,18 @@ choices! {
         Normal = Choice {
             id: "normal",
             label: "Normal offset",
-            summary: "the receiver is moved along its normal before it is looked up, most where the light grazes it",
+            summary: "the receiver is moved along its normal and towards the light before it is looked up, as most engines do",
             source: Some(Source { paper: "Holbert, Saying Goodbye to Shadow Acne", year: 2011 }),
-            params: &[NORMAL_OFFSET, CONSTANT],
+            params: &[
+                NORMAL_OFFSET,
+                NORMAL_ALWAYS,
+                NORMAL_TILT,
+                DEPTH_TEXEL,
+                DEPTH_M,
+                DEPTH_SHARE,
+                POLYGON_SLOPE,
+                CONSTANT,
+            ],
             ..EMPTY
         };
         /// The receiver's plane.
@@ -449,8 +458,71 @@ const NORMAL_OFFSET: Param = Param {
     max: 64.0,
     step: 0.1,
     default: ParamDefault::Fixed(1.0),
-    help: "how far a receiver that the light grazes is moved along its normal, in widths of a texel",
+    help: "how far a receiver is moved along its normal times the sine of normal and light, in widths of a texel",
     cost: "none; too much moves shadows off their casters",
+};
+
+/// Zero unless set, as most of a formula that belongs to some engine is.
+const NO_OFFSET: Param = Param {
+    name: "",
+    label: "",
+    unit: "texel",
+    min: 0.0,
+    max: 64.0,
+    step: 0.1,
+    default: ParamDefault::Fixed(0.0),
+    help: "",
+    cost: "none; too much moves shadows off their casters",
+};
+
+const NORMAL_ALWAYS: Param = Param {
+    name: "normal_always",
+    label: "Normal offset at any angle",
+    help: "how far a receiver is moved along its normal whatever the light's angle, in widths of a texel",
+    ..NO_OFFSET
+};
+
+const NORMAL_TILT: Param = Param {
+    name: "normal_tilt",
+    label: "Normal offset by tilt",
+    help: "how far a receiver is moved along its normal times 1 - cosine of normal and light, in widths of a texel",
+    ..NO_OFFSET
+};
+
+const DEPTH_TEXEL: Param = Param {
+    name: "depth_texel",
+    label: "Depth offset",
+    help: "how far a receiver is moved towards the light, in widths of a texel",
+    ..NO_OFFSET
+};
+
+const DEPTH_M: Param = Param {
+    name: "depth_m",
+    label: "Depth offset in metres",
+    unit: "m",
+    max: 1000.0,
+    step: 0.001,
+    help: "how far a receiver is moved towards the light whatever the scene's scale",
+    ..NO_OFFSET
+};
+
+const DEPTH_SHARE: Param = Param {
+    name: "depth_share",
+    label: "Depth offset by distance",
+    unit: "distance",
+    max: 0.5,
+    step: 0.001,
+    help: "how far a receiver is moved towards the light, as a share of its distance along the light's axis; not under parallel light",
+    ..NO_OFFSET
+};
+
+const POLYGON_SLOPE: Param = Param {
+    name: "polygon_slope",
+    label: "Polygon slope",
+    unit: "depth slope",
+    max: 32.0,
+    help: "how many times a triangle's depth slope, for each texel, the map is pushed away from the light besides",
+    ..NO_OFFSET
 };
 
 const WIDTH: Param = Param {

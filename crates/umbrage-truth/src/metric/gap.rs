@@ -77,14 +77,25 @@ impl Contacts {
     /// though it lies in shadow. 0 where shadows begin at their contacts; `None` where nothing touches, or only within
     /// what the technique cannot resolve.
     pub fn gap_m(&self, judged: &Judged, v: &[Vec3], reach_px: &[f32]) -> Option<f64> {
-        let mut gap_m: Option<f64> = None;
+        self.gap(judged, v, reach_px, |_| 1.0)
+    }
+
+    /// [`Self::gap_m`] in other units: `unit_m` is how long one is at a pixel, metres.
+    pub fn gap(
+        &self,
+        judged: &Judged,
+        v: &[Vec3],
+        reach_px: &[f32],
+        unit_m: impl Fn(usize) -> f64,
+    ) -> Option<f64> {
+        let mut gap: Option<f64> = None;
         for (pixel, contact) in self.of_pixel.iter().enumerate() {
             let Some(contact) = contact.filter(|_| judged.is_sure(pixel, reach_px[pixel])) else { continue };
-            let lit_m =
-                if self.is_lit_all_along(pixel, contact, judged, v) { contact.distance_m } else { 0.0 };
-            gap_m = Some(gap_m.unwrap_or(0.0).max(f64::from(lit_m)));
+            let is_lit = self.is_lit_all_along(pixel, contact, judged, v);
+            let lit = if is_lit { f64::from(contact.distance_m) / unit_m(pixel) } else { 0.0 };
+            gap = Some(gap.unwrap_or(0.0).max(lit));
         }
-        gap_m
+        gap
     }
 
     fn is_lit_all_along(&self, pixel: usize, contact: Contact, judged: &Judged, v: &[Vec3]) -> bool {
