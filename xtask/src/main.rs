@@ -56,8 +56,8 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "gallery",
-        takes: "",
-        summary: "draw the pictures of docs/gallery and write docs/gallery.md",
+        takes: "[NAME]",
+        summary: "draw the pictures of docs/gallery and write docs/gallery.md (NAME: only those named so)",
         run: gallery::run,
     },
     Task {
@@ -146,5 +146,6 @@ mod tests {
         assert!(refused(&["demo", "now"]).contains("`now`"));
         assert!(refused(&["bench", "--jsno"]).contains("--json"));
         assert!(refused(&["bless", "a", "b"]).contains("one"));
+        assert!(refused(&["gallery", "h99"]).contains("`h99`"));
     }
 }

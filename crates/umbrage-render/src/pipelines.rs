@@ -202,6 +202,11 @@ impl MeshPipelines {
         .to_vec();
         let compilation_options =
             wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        // Alpha mixes and cuts out; the picture itself is opaque, as it was cleared.
+        let write_mask = match target {
+            MeshTarget::Gbuffer => wgpu::ColorWrites::ALL,
+            MeshTarget::Forward { .. } => wgpu::ColorWrites::COLOR,
+        };
         let (entry_point, format, samples) = match (target, variant.full) {
             (MeshTarget::Gbuffer, false) => ("fs_gbuffer_plain", GBUFFER, 1),
             (MeshTarget::Gbuffer, true) => ("fs_gbuffer_full", GBUFFER, 1),
@@ -242,7 +247,7 @@ impl MeshPipelines {
                 targets: &[Some(wgpu::ColorTargetState {
                     format,
                     blend: variant.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
+                    write_mask,
                 })],
             }),
             multiview_mask: None,

@@ -276,6 +276,19 @@ fn cut_out_casters() {
     check_differs("cut-out", &solid, "a sheet without holes");
 }
 
+/// Alpha of a surface is not alpha of the picture, whether it mixes, cuts or means nothing.
+#[test]
+fn pictures_are_opaque() {
+    let Some(gpu) = gpu() else { return };
+    for scene in [cut_out(AlphaMode::Opaque), cut_out(AlphaMode::Mask { cutoff: 0.5 }), panes()] {
+        for samples in [1, 4] {
+            let options = RenderOptions { samples, ..RenderOptions::new(settings("linear", &[])) };
+            let shot = shoot_with(&gpu, &scene, SIDE, options);
+            assert!(shot.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255), "{samples} samples");
+        }
+    }
+}
+
 /// Light through panes of glass. The same panes cut by their alpha must not pass for it, and neither must a light whose colours are
 /// not multiplied.
 #[test]
