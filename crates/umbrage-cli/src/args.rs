@@ -109,8 +109,8 @@ pub struct SceneArgs {
     ///   inner=DEG           from the axis to where it begins to fade. Default 0.8 outer
     ///   range=M             where the light has faded to nothing. Default: never
     ///   radius=M            a shining sphere instead of a point; or disc=M, a disc of that radius, or
-    ///                       rect=W:H, a rectangle, both across the direction. Only the truth softens by
-    ///                       these so far: no technique does
+    ///                       rect=W:H, a rectangle, both across the direction. The truth softens by these,
+    ///                       and the technique multi-view
     ///   angle=DEG           across the disc of a sun (directional); 0.53 is the real one's
     ///   near=M far=M        planes of the shadow map. Default: fitted to the scene
     ///   cookie=FILE         a slide (png, jpg, webp) in front of a spot light

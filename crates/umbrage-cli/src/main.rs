@@ -114,7 +114,7 @@ fn wrong_use(error: &clap::Error) -> Result<(), Fault> {
                 .filter(|line| !line.is_empty())
                 .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more information"))
                 .collect();
-            let message = useful.join("; ");
+            let message = useful.join("; ").replace(":; ", ": ");
             Err(Fault::WrongUse(message.trim_start_matches("error: ").to_owned()))
         }
     }
