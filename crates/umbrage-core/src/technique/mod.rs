@@ -4,9 +4,12 @@
 //! [`choices`]. A [`Technique`] names a combination; [`Settings`] is one with its parameters.
 
 pub mod choices;
+mod combination;
+mod params;
 mod settings;
 
-pub use choices::{Bias, Choice, Combination, Filter, Projection, Steps, Storage, Translucent};
+pub use choices::{Bias, Choice, Filter, Projection, Steps, Storage, Translucent};
+pub use combination::Combination;
 pub use settings::{SettingError, Settings};
 
 /// Where an idea was published.

@@ -1,6 +1,7 @@
 //! A technique with its parameters, as a user asked for it.
 
-use super::choices::{Bias, Combination, Filter, Projection, Storage, Translucent};
+use super::choices::{Bias, Filter, Projection, Storage, Translucent};
+use super::combination::Combination;
 use super::{Param, ParamDefault, Technique, find};
 
 /// A technique with every choice and parameter settled.

@@ -58,7 +58,7 @@ pub const ROWS: &[Row] = &[
         title: "The format that the adapter has",
         text: "The adapter is asked first; `umbrage doctor` says what was chosen and why:",
         listings: &[
-            Listing { arguments: "doctor", paragraph: "Depth formats" },
+            Listing { arguments: "doctor", paragraph: "Formats of shadow maps" },
         ],
         ..Row::BARE
     },
