@@ -1,6 +1,9 @@
 //! What the automatic bias promises: no acne, no leaks, no gaps, at any scale, and with nothing to set. `cargo xtask bias`
 //! measures the same more widely.
 
+mod common;
+
+use common::{builtin, gpu, settings};
 use glam::UVec2;
 use std::ops::ControlFlow;
 use umbrage_measure::{Cameras, Plan, Row, compare};
@@ -29,22 +32,8 @@ const ALL: [Asked; 5] = [
 /// At other scales, where only rounding and what is counted in metres could differ.
 const SOME: [Asked; 2] = [("linear", &[]), ("pcf", &[("width", "9")])];
 
-/// The software rasteriser. `None`, said loudly, where it is missing; a failure where `UMBRAGE_GOLDEN_REQUIRED=1` says that it
-/// must not be.
-fn gpu() -> Option<Gpu> {
-    match Gpu::new(Some("llvmpipe")) {
-        Ok(gpu) => Some(gpu),
-        Err(error) => {
-            let required = std::env::var("UMBRAGE_GOLDEN_REQUIRED").is_ok_and(|v| v == "1");
-            assert!(!required, "UMBRAGE_GOLDEN_REQUIRED=1, but: {error}");
-            eprintln!("SKIPPED, nothing was measured: {error}");
-            None
-        }
-    }
-}
-
 fn scene(name: &str, scale: &str, point: bool) -> Scene {
-    let mut scene = umbrage_scene::load(&format!("builtin:{name}?scale={scale}")).expect("a built-in scene");
+    let mut scene = builtin(&format!("{name}?scale={scale}"));
     scene.lights.truncate(1);
     if point {
         let light = &mut scene.lights[0].light;
@@ -55,7 +44,8 @@ fn scene(name: &str, scale: &str, point: bool) -> Scene {
 
 fn measured(gpu: &Gpu, scene: &Scene, asked: &[Asked], more: &[(&str, &str)]) -> Vec<Row> {
     let settings = |(id, pairs): &Asked| {
-        Settings::new(id, pairs.iter().chain(more).copied()).expect("settings of a test")
+        let pairs: Vec<_> = pairs.iter().chain(more).copied().collect();
+        settings(id, &pairs)
     };
     let techniques: Vec<Settings> = asked.iter().map(settings).collect();
     let plan = Plan {

@@ -1,36 +1,16 @@
 //! Point lights across the edges of their tiles, and area lights from many places, against ray-traced truth.
 
+mod common;
+
+use common::{builtin, gpu, settings};
 use glam::{Mat4, Quat, UVec2, Vec3};
 use std::ops::ControlFlow;
-use std::sync::{Mutex, MutexGuard, OnceLock};
 use umbrage_measure::{Cameras, Plan, compare};
 use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_render::umbrage::core::{Light, LightKind, LightShape};
 use umbrage_render::{Gpu, Measure, RenderOptions, Renderer, View};
 use umbrage_scene::Scene;
 use umbrage_truth::{Place, Quality, Rays, Surfaces, Visibility, silent};
-
-fn gpu() -> Option<MutexGuard<'static, Gpu>> {
-    static GPU: OnceLock<Result<Mutex<Gpu>, String>> = OnceLock::new();
-    let made = GPU.get_or_init(|| Gpu::new(Some("llvmpipe")).map(Mutex::new).map_err(|e| e.to_string()));
-    match made {
-        Ok(gpu) => Some(gpu.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
-        Err(error) => {
-            let required = std::env::var("UMBRAGE_GOLDEN_REQUIRED").is_ok_and(|v| v == "1");
-            assert!(!required, "UMBRAGE_GOLDEN_REQUIRED=1, but: {error}");
-            eprintln!("SKIPPED, nothing was measured: {error}");
-            None
-        }
-    }
-}
-
-fn builtin(spec: &str) -> Scene {
-    umbrage_scene::load(&format!("builtin:{spec}")).expect("a built-in scene")
-}
-
-fn settings(technique: &str, pairs: &[(&str, &str)]) -> Settings {
-    Settings::new(technique, pairs.iter().copied()).expect("settings of a test")
-}
 
 /// The same scene, turned about the vertical axis: the same picture, but for where the tiles of a point light meet.
 fn turned(scene: &Scene, angle_rad: f32) -> Scene {

@@ -5,9 +5,11 @@
 #[allow(dead_code, reason = "its other scenes are for goldens")]
 mod scenes;
 
+mod common;
+
+use common::{builtin, gpu, settings};
 use glam::{UVec2, Vec3};
 use std::ops::ControlFlow;
-use std::sync::{Mutex, MutexGuard, OnceLock};
 use umbrage_measure::{Cameras, Comparison, MeasureError, Plan, Row, compare};
 use umbrage_render::umbrage::core::technique::{Projection, Settings};
 use umbrage_render::umbrage::core::{Camera, Light, LightKind, LightShape};
@@ -18,30 +20,6 @@ use umbrage_truth::Quality;
 const SIDE: u32 = 160;
 /// A map this fine has texels below a pixel in these pictures, so that only the edge itself may be wrong.
 const MAP: (&str, &str) = ("map_size", "2048");
-
-/// The software rasteriser, one test at a time. `None`, said loudly, where it is missing; a failure where
-/// `UMBRAGE_GOLDEN_REQUIRED=1` says that it must not be.
-fn gpu() -> Option<MutexGuard<'static, Gpu>> {
-    static GPU: OnceLock<Result<Mutex<Gpu>, String>> = OnceLock::new();
-    let made = GPU.get_or_init(|| Gpu::new(Some("llvmpipe")).map(Mutex::new).map_err(|e| e.to_string()));
-    match made {
-        Ok(gpu) => Some(gpu.lock().unwrap_or_else(|poisoned| poisoned.into_inner())),
-        Err(error) => {
-            let required = std::env::var("UMBRAGE_GOLDEN_REQUIRED").is_ok_and(|v| v == "1");
-            assert!(!required, "UMBRAGE_GOLDEN_REQUIRED=1, but: {error}");
-            eprintln!("SKIPPED, nothing was measured: {error}");
-            None
-        }
-    }
-}
-
-fn builtin(spec: &str) -> Scene {
-    umbrage_scene::load(&format!("builtin:{spec}")).expect("a built-in scene")
-}
-
-fn settings(technique: &str, pairs: &[(&str, &str)]) -> Settings {
-    Settings::new(technique, pairs.iter().copied()).expect("settings of a test")
-}
 
 fn plan(scene: &Scene, techniques: Vec<Settings>) -> Plan {
     Plan {
