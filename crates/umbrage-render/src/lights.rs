@@ -116,10 +116,7 @@ impl Lights {
                     eye: Some(eye),
                     border_texel: settings.reach_texel() + 1.0,
                 };
-                // How near to the light there is anything: from its middle.
-                let middle = fit_all(light, bounds_world, &options).ok();
-                let nearest_m = middle.iter().flatten().map(|view| view.near_m).fold(f32::INFINITY, f32::min);
-                for place in places_of(light, settings.places(), nearest_m) {
+                for place in places_on(light, settings.places(), bounds_world, &options) {
                     match fit_all(&place, bounds_world, &options) {
                         Ok(views) => {
                             made.light_of_view.extend(views.iter().map(|_| place));
@@ -177,6 +174,18 @@ impl Lights {
         };
         self.lights.iter().zip(scene_lights).map(relit).collect()
     }
+}
+
+/// The places of a light that it is seen from: itself, or many on an area light.
+fn places_on(light: &Light, count: u32, bounds_world: &[Aabb], options: &FitOptions) -> Vec<Light> {
+    // Only the cones of many places have to know how near to the light there is anything: from its middle.
+    let nearest_m = if count > 1 {
+        let middle = fit_all(light, bounds_world, options).ok();
+        middle.iter().flatten().map(|view| view.near_m).fold(f32::INFINITY, f32::min)
+    } else {
+        f32::INFINITY
+    };
+    places_of(light, count, nearest_m)
 }
 
 /// Where the eye is: a place and 1, or the direction towards it and 0.
