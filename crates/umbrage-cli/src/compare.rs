@@ -111,12 +111,12 @@ fn techniques(asked: &[TechniqueSpec]) -> Vec<TechniqueSpec> {
 /// What of `set` a technique takes, and then what it has of its own, which goes before.
 fn taken_by(spec: &TechniqueSpec, set: &[Pair]) -> Result<Vec<Pair>, Fault> {
     let plain = Settings::new(&spec.id, [])?;
-    let is_choice = |pair: &Pair| Settings::CHOICES.contains(&pair.key.as_str());
+    let is_choice = |pair: &Pair| Settings::is_choice(&pair.key);
     let is_own = |pair: &Pair| spec.set.iter().any(|own| own.key == pair.key);
     let shared = set.iter().filter(|pair| !is_own(pair));
     let choices: Vec<Pair> = shared
         .clone()
-        .filter(|pair| plain.combination.is_some() && is_choice(pair))
+        .filter(|pair| plain.method.rows().iter().any(|(key, _)| *key == pair.key))
         .chain(spec.set.iter().filter(|pair| is_choice(pair)))
         .cloned()
         .collect();

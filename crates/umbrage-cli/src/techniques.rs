@@ -6,8 +6,8 @@ use crate::json::{self, ParamJson, SourceJson};
 use crate::text;
 use serde_json::{Value, json};
 use umbrage_render::umbrage::core::technique::{
-    Bias, Choice, Combination, DEFAULT, Filter, Param, ParamDefault, Projection, Settings, Source, Storage,
-    TECHNIQUES, Technique, Translucent,
+    Choice, Combination, DEFAULT, Family, Method, Param, ParamDefault, Settings, Source, TECHNIQUES, Table,
+    Technique,
 };
 
 /// Prints the table.
@@ -20,29 +20,27 @@ pub fn run(args: &TechniquesArgs) -> Result<(), Fault> {
         (true, false) => json::print(&json!({
             "default": DEFAULT,
             "techniques": TECHNIQUES.iter().map(technique_json).collect::<Vec<_>>(),
-            "choices": tables().map(|(key, rows)| (key.to_owned(), rows.iter().map(|row| choice_json(row)).collect()))
+            "choices": tables().map(|(_, table)| (table.key.to_owned(), table.rows.iter().map(|row| choice_json(row)).collect()))
                 .collect::<serde_json::Map<String, Value>>(),
+            "families": Family::WITH_CHOICES.iter().map(|family| {
+                (family.id().to_owned(), family.tables().iter().map(|table| Value::from(table.key)).collect())
+            }).collect::<serde_json::Map<String, Value>>(),
         })),
         (false, true) => say(&matrix()),
         (false, false) => say(&listing(text::width())),
     }
 }
 
-fn tables() -> impl Iterator<Item = (&'static str, Vec<&'static Choice>)> {
-    let rows = [
-        Storage::ALL.iter().map(|c| c.row()).collect::<Vec<_>>(),
-        Projection::ALL.iter().map(|c| c.row()).collect(),
-        Bias::ALL.iter().map(|c| c.row()).collect(),
-        Filter::ALL.iter().map(|c| c.row()).collect(),
-        Translucent::ALL.iter().map(|c| c.row()).collect(),
-    ];
-    Settings::CHOICES.into_iter().zip(rows)
+fn tables() -> impl Iterator<Item = (Family, Table)> {
+    Family::WITH_CHOICES
+        .into_iter()
+        .flat_map(|family| family.tables().into_iter().map(move |table| (family, table)))
 }
 
 /// Every parameter once, in the order of the tables.
 fn all_params() -> Vec<&'static Param> {
     let mut params: Vec<&'static Param> = Vec::new();
-    for param in tables().flat_map(|(_, rows)| rows).flat_map(|row| row.params) {
+    for param in tables().flat_map(|(_, table)| table.rows).flat_map(|row| row.params) {
         if params.iter().all(|known| known.name != param.name) {
             params.push(param);
         }
@@ -50,9 +48,8 @@ fn all_params() -> Vec<&'static Param> {
     params
 }
 
-fn choices_of(combination: &Combination) -> String {
-    let pairs = Settings::CHOICES.iter().zip(combination.rows());
-    pairs.map(|(key, row)| format!("{key}={}", row.id)).collect::<Vec<_>>().join(" ")
+fn choices_of(method: &Method) -> String {
+    method.rows().iter().map(|(key, row)| format!("{key}={}", row.id)).collect::<Vec<_>>().join(" ")
 }
 
 fn cite(source: Option<Source>) -> String {
@@ -66,16 +63,19 @@ fn listing(width: usize) -> String {
         let default = if technique.id == DEFAULT { " (the default)" } else { "" };
         let about = format!("{}{default}: {}{}", technique.label, technique.summary, cite(technique.source));
         out += &text::hang(&format!("  {}", technique.id), INDENT, &about, width);
-        if let Some(combination) = &technique.combination {
-            out += &text::hang("", INDENT, &choices_of(combination), width);
-            let params: Vec<&str> = combination.params().map(|p| p.name).collect();
+        if technique.method != Method::None {
+            out += &text::hang("", INDENT, &choices_of(&technique.method), width);
+            let params: Vec<&str> = technique.method.params().iter().map(|p| p.name).collect();
             out += &text::hang("", INDENT, &format!("parameters: {}", params.join(", ")), width);
         }
     }
-    out += "\nChoices of a map (--set KEY=ID)\n";
-    for (key, rows) in tables() {
-        out += &format!("  {key}\n");
-        for row in rows {
+    let mut last = None;
+    for (family, table) in tables() {
+        if last.replace(family) != Some(family) {
+            out += &format!("\nChoices of a {} (--set KEY=ID)\n", family.id());
+        }
+        out += &format!("  {}\n", table.key);
+        for row in table.rows {
             let params: Vec<&str> = row.params.iter().map(|p| p.name).collect();
             let params =
                 if params.is_empty() { String::new() } else { format!(" (has {})", params.join(", ")) };
@@ -99,7 +99,8 @@ fn listing(width: usize) -> String {
 }
 
 fn matrix() -> String {
-    let head = Settings::CHOICES.iter().map(|key| (*key).to_owned()).chain(["valid".to_owned()]).collect();
+    let keys: Vec<&str> = Family::Map.tables().iter().map(|table| table.key).collect();
+    let head = keys.iter().map(|key| (*key).to_owned()).chain(["valid".to_owned()]).collect();
     let mut rows: Vec<Vec<String>> = vec![head];
     let mut valid = 0;
     for combination in Combination::all() {
@@ -112,9 +113,9 @@ fn matrix() -> String {
     let count = rows.len() - 1;
     let mut out = String::new();
     for row in &rows {
-        let (choices, verdict) = row.split_at(Settings::CHOICES.len());
+        let (choices, verdict) = row.split_at(keys.len());
         let head: String = choices.iter().map(|cell| format!("{cell:<12}")).collect();
-        out += &text::hang(&head, 12 * Settings::CHOICES.len(), &verdict.join(" "), text::width());
+        out += &text::hang(&head, 12 * keys.len(), &verdict.join(" "), text::width());
     }
     out + &format!("{valid} of {count} combinations are valid\n")
 }
@@ -123,8 +124,8 @@ fn matrix_json() -> Vec<Value> {
     Combination::all()
         .map(|combination| {
             let mut entry = serde_json::Map::new();
-            for (key, row) in Settings::CHOICES.iter().zip(combination.rows()) {
-                entry.insert((*key).to_owned(), row.id.into());
+            for (key, row) in Method::Map(combination).rows() {
+                entry.insert(key.to_owned(), row.id.into());
             }
             entry.insert("valid".to_owned(), combination.objection().is_none().into());
             entry.insert("why_not".to_owned(), combination.objection().into());
@@ -134,10 +135,9 @@ fn matrix_json() -> Vec<Value> {
 }
 
 fn technique_json(technique: &Technique) -> Value {
-    let choices = technique.combination.map(|combination| {
-        let pairs = Settings::CHOICES.iter().zip(combination.rows());
-        pairs.map(|(key, row)| ((*key).to_owned(), row.id.into())).collect::<serde_json::Map<String, Value>>()
-    });
+    let pairs = technique.method.rows().into_iter().map(|(key, row)| (key.to_owned(), row.id.into()));
+    let choices =
+        (technique.method != Method::None).then(|| pairs.collect::<serde_json::Map<String, Value>>());
     let settings = Settings::new(technique.id, []).ok();
     let params: Vec<Value> = settings
         .iter()
@@ -155,7 +155,7 @@ fn technique_json(technique: &Technique) -> Value {
         "id": technique.id,
         "label": technique.label,
         "summary": technique.summary,
-        "family": technique.family.id(),
+        "family": technique.method.family().id(),
         "source": technique.source.map(SourceJson::from),
         "choices": choices,
         "params": params,
@@ -192,9 +192,16 @@ mod tests {
     #[test]
     fn the_choices_are_named_as_settings_are() {
         use umbrage_render::umbrage::core::technique::Settings;
-        for (key, rows) in tables() {
-            for row in rows {
-                assert!(Settings::new("linear", [(key, row.id)]).is_ok(), "{key}={}", row.id);
+        for (family, table) in tables() {
+            let technique = TECHNIQUES.iter().find(|technique| technique.method.family() == family);
+            let Some(technique) = technique else { panic!("no technique is a {}", family.id()) };
+            for row in table.rows {
+                assert!(
+                    Settings::new(technique.id, [(table.key, row.id)]).is_ok(),
+                    "{}={}",
+                    table.key,
+                    row.id
+                );
             }
         }
     }

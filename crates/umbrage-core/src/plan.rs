@@ -4,7 +4,7 @@
 //! surfaces are lit is the renderer's own affair: the reference renderer draws them into a G-buffer first.
 
 use crate::DEPTH;
-use crate::technique::{Bias, Family, Settings, Storage};
+use crate::technique::{Bias, Method, Settings, Storage};
 
 /// Where a pass draws.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,8 +123,8 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
         offset: PolygonOffset::default(),
         draws: Draws::Surfaces,
     };
-    match (settings.technique.family, settings.combination) {
-        (Family::Map, Some(combination)) => {
+    match settings.method {
+        Method::Map(combination) => {
             let map = Pass {
                 name: "shadow-map",
                 per_light: true,
@@ -281,7 +281,7 @@ mod tests {
             let settings = Settings::new(technique.id, []).expect("from the table");
             let passes = plan(&settings);
             assert_eq!(passes.last().map(|p| p.draws), Some(Draws::Surfaces), "{}", technique.id);
-            assert_eq!(passes.len() > 1, technique.family == Family::Map, "{}", technique.id);
+            assert_eq!(passes.len() > 1, technique.method != Method::None, "{}", technique.id);
         }
     }
 

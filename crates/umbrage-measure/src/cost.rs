@@ -64,7 +64,7 @@ impl Cost {
         let of_casters = |name: &str| planned.iter().any(|pass| name.starts_with(pass.name));
         let casters: Vec<_> = report.passes.iter().filter(|pass| of_casters(&pass.name)).collect();
         let side = u64::from(settings.map_size_texel());
-        let is_shadowed = settings.combination.is_some();
+        let is_shadowed = settings.combination().is_some();
         Ok(Self {
             // Without a technique both are the same frame, and what they differ by is noise.
             cost_ms: if is_shadowed { median(&costs) } else { 0.0 },

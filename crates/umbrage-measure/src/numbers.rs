@@ -23,10 +23,8 @@ pub fn median(values: &[f64]) -> f64 {
 /// Choices and parameters of a technique by name.
 pub fn params(settings: &Settings) -> Map<String, Value> {
     let mut map = Map::new();
-    if let Some(combination) = settings.combination {
-        for (key, row) in Settings::CHOICES.iter().zip(combination.rows()) {
-            map.insert((*key).to_owned(), row.id.into());
-        }
+    for (key, row) in settings.method.rows() {
+        map.insert(key.to_owned(), row.id.into());
     }
     for param in settings.params() {
         map.insert(param.name.to_owned(), settings.value(param.name).map(decimal).into());

@@ -4,7 +4,7 @@ mod picture;
 
 use crate::{RenderError, RenderOptions, Renderer, View, readback};
 use umbrage::core::density::Density;
-use umbrage::core::technique::Bias;
+use umbrage::core::technique::{Bias, Method};
 
 /// A receiver's triangle faces the light by more than this cosine: one that is edge-on has no texels in any map, and hardly
 /// any light that a shadow could take away.
@@ -116,7 +116,7 @@ impl DensityStatistics {
 
 /// The map's texels are asked which surface they hold, so that map is drawn without bias. The numbers know of none.
 pub(crate) fn options(mut options: RenderOptions) -> RenderOptions {
-    if let (View::DensityLight, Some(combination)) = (options.view, &mut options.settings.combination) {
+    if let (View::DensityLight, Method::Map(combination)) = (options.view, &mut options.settings.method) {
         combination.bias = Bias::None;
     }
     options

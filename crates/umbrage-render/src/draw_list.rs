@@ -256,7 +256,7 @@ fn batches<'a>(
 /// each view.
 pub fn open_casters(names: &[String], settings: &Settings, casters: &[Vec<Batch>]) -> Option<String> {
     const NAMED: usize = 8;
-    if settings.combination.is_none_or(|c| c.bias != Bias::SecondDepth) {
+    if settings.combination().is_none_or(|c| c.bias != Bias::SecondDepth) {
         return None;
     }
     let mut meshes: Vec<usize> = casters.iter().flatten().filter(|b| !b.one_sided).map(|b| b.mesh).collect();

@@ -108,7 +108,7 @@ impl Lights {
             light.check()?;
             let first = made.views.len();
             let mut places = 0;
-            if let Some(combination) = settings.combination {
+            if let Some(combination) = settings.combination() {
                 let options = FitOptions {
                     size_texel,
                     least_near: storage.least_near(),

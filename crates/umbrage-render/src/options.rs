@@ -147,7 +147,7 @@ pub struct GivenVisibility {
 impl RenderOptions {
     /// Is V a colour: three numbers for each pixel, not one?
     pub fn colors_light(&self) -> bool {
-        self.given.is_some() || self.settings.combination.is_some_and(|c| c.colors_light())
+        self.given.is_some() || self.settings.combination().is_some_and(|c| c.colors_light())
     }
 
     /// A 1280x720 picture with these settings.

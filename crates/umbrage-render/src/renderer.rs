@@ -95,7 +95,7 @@ impl<'a> Renderer<'a> {
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
         let format = settled_format(gpu, &options)?;
         let most_views = most_views(scene, &options);
-        let color_maps = options.settings.combination.is_some() && format.storage.is_color();
+        let color_maps = options.settings.combination().is_some() && format.storage.is_color();
         let layouts = Layouts::new(&gpu.device, color_maps, most_views);
         let geometry = Arc::new(Geometry::new(&gpu.device, scene));
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
@@ -311,9 +311,9 @@ fn make_casting(
 
 /// The format of the maps, when it goes with all else that was asked for.
 fn settled_format(gpu: &Gpu, options: &RenderOptions) -> Result<ChosenFormat, RenderError> {
-    let storage = options.settings.combination.map_or(Storage::Auto, |c| c.storage);
+    let storage = options.settings.combination().map_or(Storage::Auto, |c| c.storage);
     let format = choose_format(storage, |format| gpu.usages_of(format))?;
-    let settled = options.settings.combination.map(|c| Combination { storage: format.storage, ..c });
+    let settled = options.settings.combination().map(|c| Combination { storage: format.storage, ..c });
     if let Some(reason) = settled.and_then(|combination| combination.objection()) {
         return Err(RenderError::View(format!(
             "this adapter's best storage for maps is {}, and that does not go with the rest: {reason}",
@@ -331,7 +331,8 @@ fn settled_format(gpu: &Gpu, options: &RenderOptions) -> Result<ChosenFormat, Re
 
 /// How many views the lights of a scene may have.
 fn most_views(scene: &Scene, options: &RenderOptions) -> usize {
-    let places = if options.settings.combination.is_some() { options.settings.places() as usize } else { 0 };
+    let places =
+        if options.settings.combination().is_some() { options.settings.places() as usize } else { 0 };
     let of_light = |light: &Light| {
         let places = if light.shape == LightShape::Point { places.min(1) } else { places };
         places * if light.kind == LightKind::Point { 6 } else { 1 }
@@ -345,7 +346,7 @@ fn shader_needs(scene: &Scene, options: &RenderOptions, storage: Storage, lights
     let is_blinn = |r: &Reflectance| options.all_blinn || matches!(r, Reflectance::Blinn { .. });
     ShaderNeeds {
         // `auto` is read as what it was settled on.
-        combination: options.settings.combination.map(|c| Combination { storage, ..c }),
+        combination: options.settings.combination().map(|c| Combination { storage, ..c }),
         given: options.given.is_some(),
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
@@ -437,7 +438,7 @@ fn check_given(scene: &Scene, options: &RenderOptions) -> Result<(), RenderError
     let lights = scene.lights.len().min(MAX_LIGHTS);
     let pixels = options.size.element_product() as usize;
     let fits = given.of_light.len() == lights && given.of_light.iter().all(|v| v.len() == pixels);
-    if fits && options.settings.combination.is_none() {
+    if fits && options.settings.combination().is_none() {
         return Ok(());
     }
     Err(RenderError::View(if fits {

@@ -231,7 +231,7 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
     let mut wanted: Vec<ShaderNeeds> =
         Combination::all().map(|combination| needs(Some(combination), 2, true, false)).collect();
     let default = umbrage::core::technique::find(umbrage::core::technique::DEFAULT).expect("the default");
-    for combination in [None, default.combination] {
+    for combination in [None, default.method.combination()] {
         for (metallic_roughness, blinn) in [(true, false), (false, true), (true, true)] {
             for lights in [0, 1, WRITTEN_OUT, WRITTEN_OUT + 1] {
                 wanted.push(needs(combination, lights, metallic_roughness, blinn));

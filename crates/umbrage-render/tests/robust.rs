@@ -5,7 +5,7 @@ mod common;
 use common::scenes::{builtin, over_floor, sheet, with_light};
 use common::{gpu, settings};
 use glam::{Mat4, UVec2, Vec3};
-use umbrage_render::umbrage::core::technique::{Combination, Settings, TECHNIQUES};
+use umbrage_render::umbrage::core::technique::{Combination, Method, Settings, TECHNIQUES};
 use umbrage_render::umbrage::core::{Camera, Light, LightKind, LightShape};
 use umbrage_render::{Gpu, MAX_LIGHTS, Measure, RenderError, RenderOptions, Renderer, View};
 use umbrage_scene::{Material, Scene, SceneLight};
@@ -22,7 +22,7 @@ fn visibility(gpu: &Gpu, scene: &Scene, settings: Settings) -> Result<Vec<f32>, 
 fn all(pairs: &[(&str, &str)]) -> Vec<Settings> {
     TECHNIQUES
         .iter()
-        .filter(|technique| technique.combination.is_some())
+        .filter(|technique| technique.method.combination().is_some())
         .map(|technique| settings(technique.id, pairs))
         .collect()
 }
@@ -190,9 +190,8 @@ fn every_valid_combination_draws_a_shadow() {
     let plain = visibility(&gpu, &scene, settings("unshadowed", &[])).expect("unshadowed");
     let (mut drawn, mut refused) = (0, 0);
     for combination in Combination::all() {
-        let ids = combination.rows().map(|row| row.id);
-        let pairs: Vec<(&str, &str)> =
-            Settings::CHOICES.into_iter().zip(ids).chain([("map_size", "256")]).collect();
+        let ids: Vec<_> = Method::Map(combination).rows().iter().map(|(key, row)| (*key, row.id)).collect();
+        let pairs: Vec<(&str, &str)> = ids.iter().copied().chain([("map_size", "256")]).collect();
         let made = Settings::new("linear", pairs.iter().copied());
         if combination.objection().is_some() {
             assert!(made.is_err_and(|e| e.to_string().contains("do not go together")), "{ids:?}");

@@ -1,5 +1,5 @@
 //! The five choices of a depth map, each a table: how it is stored, projected, biased and filtered, and what translucent
-//! casters do to light.
+//! casters do to light. Other families have theirs in [`super::volume`] and [`super::mask`].
 
 use super::params::{
     CONSTANT, DEPTH_M, DEPTH_SHARE, DEPTH_TEXEL, MAP_SIZE, MATRIX_BIAS, NORMAL_ALWAYS, NORMAL_OFFSET,
@@ -48,11 +48,15 @@ macro_rules! choices {
     };
 }
 
-const EMPTY: Choice = Choice { id: "", label: "", summary: "", source: None, modules: &[], params: &[] };
+pub(super) use choices;
+
+pub(super) const EMPTY: Choice =
+    Choice { id: "", label: "", summary: "", source: None, modules: &[], params: &[] };
 
 const INTEL: Source =
     Source { paper: "Intel, Real-Time Shadow Maps on Mainstream Graphics Hardware", year: 2007 };
-const BJORKE: Source = Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
+pub(super) const BJORKE: Source =
+    Source { paper: "Bjorke, Shadowing Strategies for HLSL and FX Composer", year: 2005 };
 const EVERITT: Source = Source { paper: "Everitt, Rege and Cebenoyan, Hardware Shadow Mapping", year: 2001 };
 pub(super) const WOO: Source =
     Source { paper: "Woo, The Shadow Depth Map Revisited, Graphics Gems III", year: 1992 };

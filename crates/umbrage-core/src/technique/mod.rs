@@ -1,15 +1,19 @@
 //! The one table of techniques: command, listing, documentation, tests, benches and uniforms all come from it.
 //!
-//! A map technique is five independent choices (storage, projection, bias, filter, translucent), each a table of its own in
-//! [`choices`]. A [`Technique`] names a combination; [`Settings`] is one with its parameters.
+//! A technique is a family with choices, each a table of its own: five for maps ([`choices`]), four for volumes ([`volume`]), six for
+//! masks ([`mask`]). A [`Technique`] names a combination; [`Settings`] is one with its parameters.
 
 pub mod choices;
 mod combination;
+pub mod mask;
+mod method;
 mod params;
 mod settings;
+pub mod volume;
 
 pub use choices::{Bias, Choice, Filter, Projection, Steps, Storage, Translucent};
 pub use combination::Combination;
+pub use method::{Family, Method, Table};
 pub use settings::{SettingError, Settings};
 
 /// Where an idea was published.
@@ -58,25 +62,6 @@ pub enum ParamDefault {
     },
 }
 
-/// What kind of thing makes the visibility.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
-    /// No shadow at all: V is 1 wherever the light shines.
-    None,
-    /// Depth seen from the light, compared.
-    Map,
-}
-
-impl Family {
-    /// One word.
-    pub fn id(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Map => "map",
-        }
-    }
-}
-
 /// A named way to make shadows.
 #[derive(Clone, Copy, Debug)]
 pub struct Technique {
@@ -86,12 +71,10 @@ pub struct Technique {
     pub label: &'static str,
     /// What it is and what it is for, in one sentence.
     pub summary: &'static str,
-    /// What kind of thing makes the visibility.
-    pub family: Family,
     /// Where it was published.
     pub source: Option<Source>,
-    /// The five choices of a map.
-    pub combination: Option<Combination>,
+    /// What makes the visibility, with its choices.
+    pub method: Method,
 }
 
 /// The technique that is used when none is named.
@@ -122,105 +105,92 @@ pub const TECHNIQUES: &[Technique] = &[
         id: "unshadowed",
         label: "Unshadowed",
         summary: "light without shadow: what a shadow costs is measured against it",
-        family: Family::None,
         source: None,
-        combination: None,
+        method: Method::None,
     },
     Technique {
         id: "hard",
         label: "Hard shadow map",
         summary: "one comparison with the nearest texel: the cheapest map, with stairs at its edges",
-        family: Family::Map,
         source: Some(WILLIAMS),
-        combination: Some(Combination { filter: Filter::Nearest, ..LINEAR }),
+        method: Method::Map(Combination { filter: Filter::Nearest, ..LINEAR }),
     },
     Technique {
         id: "linear",
         label: "Linear shadow map",
         summary: "2x2 comparisons, blended: the stairs of `hard` become a ramp a texel wide",
-        family: Family::Map,
         source: Some(REEVES),
-        combination: Some(LINEAR),
+        method: Method::Map(LINEAR),
     },
     Technique {
         id: "pcf",
         label: "Percentage-closer filtering",
         summary: "all comparisons of a box, blended: soft edges of one width, which narrow where caster and receiver touch",
-        family: Family::Map,
         source: Some(REEVES),
-        combination: Some(Combination { filter: Filter::Pcf, ..LINEAR }),
+        method: Method::Map(Combination { filter: Filter::Pcf, ..LINEAR }),
     },
     Technique {
         id: "kernel",
         label: "Own kernel",
         summary: "a float map, and comparisons blended by the weights of any kernel: a bell, or your own WGSL function",
-        family: Family::Map,
         source: Some(BJORKE),
-        combination: Some(Combination { storage: Storage::R32Float, filter: Filter::Kernel, ..LINEAR }),
+        method: Method::Map(Combination { storage: Storage::R32Float, filter: Filter::Kernel, ..LINEAR }),
     },
     Technique {
         id: "packed",
         label: "Packed distance",
         summary: "distance in three 8-bit channels, for hardware without depth or float textures to sample",
-        family: Family::Map,
         source: Some(INTEL),
-        combination: Some(Combination { storage: Storage::Packed3, ..LINEAR }),
+        method: Method::Map(Combination { storage: Storage::Packed3, ..LINEAR }),
     },
     Technique {
         id: "perspective",
         label: "Perspective shadow map",
         summary: "the map is warped as the eye's picture is, so that near surfaces get more texels; redrawn when the eye moves",
-        family: Family::Map,
         source: Some(STAMMINGER),
-        combination: Some(Combination { projection: Projection::Perspective, ..LINEAR }),
+        method: Method::Map(Combination { projection: Projection::Perspective, ..LINEAR }),
     },
     Technique {
         id: "lispsm",
         label: "Light-space perspective map",
         summary: "the warp is laid across the light instead of along the eye: gentler, and good from more directions",
-        family: Family::Map,
         source: Some(WIMMER),
-        combination: Some(Combination { projection: Projection::LightSpacePerspective, ..LINEAR }),
+        method: Method::Map(Combination { projection: Projection::LightSpacePerspective, ..LINEAR }),
     },
     Technique {
         id: "multi-view",
         label: "Multiple views",
         summary: "an area light from many places, blended: converges to the true soft shadow as views are added",
-        family: Family::Map,
         source: Some(BJORKE),
-        combination: Some(Combination { filter: Filter::MultiView, ..LINEAR }),
+        method: Method::Map(Combination { filter: Filter::MultiView, ..LINEAR }),
     },
     Technique {
         id: "colored",
         label: "Coloured light",
         summary: "glass dims and tints the light that goes through it, by texture and alpha: V is a colour",
-        family: Family::Map,
         source: Some(BJORKE),
-        combination: Some(Combination { translucent: Translucent::Colored, ..LINEAR }),
+        method: Method::Map(Combination { translucent: Translucent::Colored, ..LINEAR }),
     },
     Technique {
         id: "matrix-bias",
         label: "Biased lookup matrix",
         summary: "the bias stands in the lookup matrix, for hardware without polygon offset: uniform, so it leaks",
-        family: Family::Map,
         source: Some(EVERITT),
-        combination: Some(Combination { bias: Bias::Matrix, ..LINEAR }),
+        method: Method::Map(Combination { bias: Bias::Matrix, ..LINEAR }),
     },
     Technique {
         id: "midpoint",
         label: "Midpoint map",
         summary: "the middle between the two nearest surfaces in place of a bias: no number to set, twice the drawing",
-        family: Family::Map,
         source: Some(choices::WOO),
-        combination: Some(Combination { bias: Bias::Midpoint, ..LINEAR }),
+        method: Method::Map(Combination { bias: Bias::Midpoint, ..LINEAR }),
     },
     Technique {
         id: "second-depth",
         label: "Second-depth map",
         summary: "back faces of closed casters in place of a bias: no number to set, no cost; open casters shadow themselves",
-        family: Family::Map,
         source: Some(choices::WANG_MOLNAR),
-        combination: Some(Combination { bias: Bias::SecondDepth, ..LINEAR }),
+        method: Method::Map(Combination { bias: Bias::SecondDepth, ..LINEAR }),
     },
 ];
 
@@ -244,7 +214,6 @@ mod tests {
         for (i, technique) in TECHNIQUES.iter().enumerate() {
             assert!(TECHNIQUES[..i].iter().all(|other| other.id != technique.id), "{}", technique.id);
             assert!(!technique.label.is_empty() && !technique.summary.is_empty(), "{}", technique.id);
-            assert_eq!(technique.family == Family::Map, technique.combination.is_some(), "{}", technique.id);
         }
         assert_eq!(find(DEFAULT).map(|t| t.id), Ok(DEFAULT));
     }
@@ -252,11 +221,14 @@ mod tests {
     #[test]
     fn every_parameter_is_described_and_its_default_is_in_range() {
         let mut seen = 0;
-        for combination in Combination::all() {
-            for param in combination.params() {
+        let maps = Combination::all().map(Method::Map);
+        let others = volume::Volume::all().map(Method::Volume).chain([Method::Mask(mask::Mask::DEFAULT)]);
+        for method in maps.chain(others) {
+            for param in method.params() {
+                let reach_texel = method.combination().map_or(0.0, |c| c.reach_texel(5.0));
                 let value = match param.default {
                     ParamDefault::Fixed(value) => value,
-                    ParamDefault::Derived { value, .. } => value(combination.reach_texel(5.0)),
+                    ParamDefault::Derived { value, .. } => value(reach_texel),
                 };
                 assert!((param.min..=param.max).contains(&value), "{}: {value}", param.name);
                 assert!(

@@ -164,3 +164,92 @@ pub(super) const MATRIX_BIAS: Param = Param {
     help: "how far every receiver is moved towards the light, as a share of the map's whole depth",
     cost: "none; light leaks wherever it is more than a caster's distance from its receiver",
 };
+
+pub(super) const FALLBACK_MAP_SIZE: Param = Param {
+    help: "width and height of the map of casters that this family cannot draw (cut out, deformed); without any there is none",
+    ..MAP_SIZE
+};
+
+pub(super) const INSET: Param = Param {
+    name: "inset_m",
+    label: "Inset",
+    unit: "m",
+    min: 0.0,
+    max: 1e6,
+    step: 0.001,
+    default: ParamDefault::Fixed(0.0),
+    help: "how far behind the lit surface, along the light, a volume begins; needed where caps and surfaces differ in depth",
+    cost: "none; shadows begin so much later",
+};
+
+pub(super) const EXTRUDE: Param = Param {
+    name: "extrude_m",
+    label: "Extrusion",
+    unit: "m",
+    min: 0.0,
+    max: 1e9,
+    step: 0.1,
+    default: ParamDefault::Fixed(0.0),
+    help: "how far a volume reaches beyond its caster; 0: without end",
+    cost: "fewer pixels are counted than without end; what lies beyond stays lit",
+};
+
+pub(super) const SOFT_PX: Param = Param {
+    name: "soft_px",
+    label: "Softness",
+    unit: "px",
+    min: 0.0,
+    max: 64.0,
+    step: 0.5,
+    default: ParamDefault::Fixed(6.0),
+    help: "how wide an edge becomes on the screen; counts where soft_m is 0",
+    cost: "two passes over the picture, lookups in proportion to it",
+};
+
+pub(super) const SOFT_M: Param = Param {
+    name: "soft_m",
+    label: "Softness",
+    unit: "m",
+    min: 0.0,
+    max: 1e6,
+    step: 0.01,
+    default: ParamDefault::Fixed(0.0),
+    help: "how wide an edge becomes on the surface, at any distance from the eye (at most 64 px); 0: soft_px counts",
+    cost: "as soft_px",
+};
+
+pub(super) const LIKE_DEPTH: Param = Param {
+    name: "like_depth",
+    label: "Like depth",
+    unit: "share of distance",
+    min: 0.0,
+    max: 1.0,
+    step: 0.001,
+    default: ParamDefault::Fixed(0.01),
+    help: "how far two pixels' surfaces may be apart to be blurred together, as a share of the distance from the eye",
+    cost: "none; more lets edges between objects blur",
+};
+
+pub(super) const MASK_SIZE: Param = Param {
+    name: "mask_size",
+    label: "Mask size",
+    unit: "texel",
+    min: 8.0,
+    max: 4096.0,
+    step: 1.0,
+    default: ParamDefault::Fixed(512.0),
+    help: "width and height of each blocker's mask",
+    cost: "memory and drawing grow with its square, for each blocker and light",
+};
+
+pub(super) const OUTLINE_TEXEL: Param = Param {
+    name: "outline_texel",
+    label: "Outline error",
+    unit: "texel",
+    min: 0.0,
+    max: 16.0,
+    step: 0.05,
+    default: ParamDefault::Fixed(0.5),
+    help: "how far the reduced outline may be from the true one, in texels of the mask",
+    cost: "none; more leaves fewer triangles to draw",
+};

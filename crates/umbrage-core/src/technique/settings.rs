@@ -1,16 +1,15 @@
 //! A technique with its parameters, as a user asked for it.
 
-use super::choices::{Bias, Filter, Projection, Storage, Translucent};
 use super::combination::Combination;
-use super::{Param, ParamDefault, Technique, find};
+use super::{Family, Method, Param, ParamDefault, Technique, find};
 
 /// A technique with every choice and parameter settled.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The row of the table that it began with.
     pub technique: &'static Technique,
-    /// The five choices, `None` without a map.
-    pub combination: Option<Combination>,
+    /// Its family with all choices made.
+    pub method: Method,
     set: Vec<(&'static str, f32)>,
 }
 
@@ -85,8 +84,10 @@ pub(super) fn suggest<'a>(asked: &str, known: impl Iterator<Item = &'a str>) -> 
 }
 
 impl Settings {
-    /// The keys that name a table of choices, in the order of [`Combination::rows`].
-    pub const CHOICES: [&str; 5] = ["storage", "projection", "bias", "filter", "translucent"];
+    /// Does the key name a table of choices, of any family?
+    pub fn is_choice(key: &str) -> bool {
+        Family::WITH_CHOICES.iter().any(|family| family.tables().iter().any(|table| table.key == key))
+    }
 
     /// The technique `id` with `key=value` pairs over its defaults. Choices count before parameters, whatever their
     /// order.
@@ -98,16 +99,16 @@ impl Settings {
         pairs: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Self, SettingError> {
         let technique = find(id)?;
-        let mut settings = Self { technique, combination: technique.combination, set: Vec::new() };
+        let mut settings = Self { technique, method: technique.method, set: Vec::new() };
         let (choices, params): (Vec<_>, Vec<_>) =
-            pairs.into_iter().partition(|(key, _)| Self::CHOICES.contains(key));
+            pairs.into_iter().partition(|(key, _)| Self::is_choice(key));
         for (i, (key, value)) in choices.iter().enumerate() {
             if choices[..i].iter().any(|(other, _)| other == key) {
                 return Err(SettingError::Twice { key: (*key).to_owned() });
             }
             settings.choose(key, value)?;
         }
-        if let Some(reason) = settings.combination.as_ref().and_then(Combination::objection) {
+        if let Some(reason) = settings.combination().as_ref().and_then(Combination::objection) {
             return Err(SettingError::Combination { reason });
         }
         for (key, value) in params {
@@ -116,15 +117,32 @@ impl Settings {
         Ok(settings)
     }
 
-    /// The parameters that this combination has.
+    /// The five choices of a map, where the technique is one.
+    pub fn combination(&self) -> Option<Combination> {
+        self.method.combination()
+    }
+
+    /// What takes over for casters that the technique's family cannot draw: the default map. `None` for maps, which can draw all,
+    /// and without shadows.
+    pub fn fallback(&self) -> Option<Self> {
+        match self.method {
+            Method::None | Method::Map(_) => None,
+            Method::Volume(_) | Method::Mask(_) => {
+                let technique = find(super::DEFAULT).ok()?;
+                let set = self.set.iter().filter(|(key, _)| *key == "map_size").copied().collect();
+                Some(Self { technique, method: technique.method, set })
+            }
+        }
+    }
+
+    /// The parameters that these choices have.
     pub fn params(&self) -> impl Iterator<Item = &'static Param> {
-        self.combination.into_iter().flat_map(|combination| combination.params().collect::<Vec<_>>())
+        self.method.params().into_iter()
     }
 
     /// The value of a parameter: as set, or its default. `None` when this combination has no such parameter.
     pub fn value(&self, name: &str) -> Option<f32> {
-        let combination = self.combination?;
-        let param = combination.params().find(|p| p.name == name)?;
+        let param = self.params().find(|p| p.name == name)?;
         let set = self.set.iter().find(|(key, _)| *key == name).map(|(_, value)| *value);
         Some(set.unwrap_or_else(|| match param.default {
             ParamDefault::Fixed(value) => value,
@@ -140,7 +158,7 @@ impl Settings {
     /// How far from the receiver, along either axis of the map, the centre of a texel may lie that counts, texels; 0
     /// without a map.
     pub fn reach_texel(&self) -> f32 {
-        self.combination.map_or(0.0, |c| c.reach_texel(self.value("width").unwrap_or(1.0)))
+        self.combination().map_or(0.0, |c| c.reach_texel(self.value("width").unwrap_or(1.0)))
     }
 
     /// From how many places an area light is seen.
@@ -150,14 +168,12 @@ impl Settings {
 
     /// Lookups of the map for each lit pixel and view: a gather counts once.
     pub fn taps(&self) -> u32 {
-        self.combination.map_or(0, |c| c.taps(self.value("width").unwrap_or(1.0)))
+        self.combination().map_or(0, |c| c.taps(self.value("width").unwrap_or(1.0)))
     }
 
     fn unknown_key(&self, key: &str) -> SettingError {
         let mut known: Vec<&str> = self.params().map(|p| p.name).collect();
-        if self.combination.is_some() {
-            known.extend(Self::CHOICES);
-        }
+        known.extend(self.method.rows().iter().map(|(key, _)| *key));
         SettingError::UnknownKey {
             technique: self.technique.id,
             key: key.to_owned(),
@@ -167,28 +183,17 @@ impl Settings {
     }
 
     fn choose(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
-        let Some(mut combination) = self.combination else { return Err(self.unknown_key(key)) };
-        let known: Vec<&str> = match key {
-            "storage" => Storage::ALL.iter().map(|c| c.row().id).collect(),
-            "projection" => Projection::ALL.iter().map(|c| c.row().id).collect(),
-            "bias" => Bias::ALL.iter().map(|c| c.row().id).collect(),
-            "filter" => Filter::ALL.iter().map(|c| c.row().id).collect(),
-            _ => Translucent::ALL.iter().map(|c| c.row().id).collect(),
+        let tables = self.method.family().tables();
+        let Some(table) = tables.iter().find(|table| table.key == key) else {
+            return Err(self.unknown_key(key));
         };
-        let found = match key {
-            "storage" => Storage::find(value).map(|c| combination.storage = c),
-            "projection" => Projection::find(value).map(|c| combination.projection = c),
-            "bias" => Bias::find(value).map(|c| combination.bias = c),
-            "filter" => Filter::find(value).map(|c| combination.filter = c),
-            _ => Translucent::find(value).map(|c| combination.translucent = c),
-        };
-        found.ok_or_else(|| SettingError::UnknownChoice {
+        let known = || table.rows.iter().map(|row| row.id);
+        self.method = self.method.choose(key, value).ok_or_else(|| SettingError::UnknownChoice {
             key: key.to_owned(),
             value: value.to_owned(),
-            suggestion: suggest(value, known.iter().copied()),
-            known: known.join(", "),
+            suggestion: suggest(value, known()),
+            known: known().collect::<Vec<_>>().join(", "),
         })?;
-        self.combination = Some(combination);
         Ok(())
     }
 
