@@ -15,6 +15,7 @@ mod normals;
 mod obj;
 mod pose;
 pub mod scene;
+mod split;
 mod tangents;
 
 pub use builtin::{Builtin, builtins};
@@ -25,6 +26,7 @@ pub use error::SceneError;
 pub use flat::plane_of;
 pub use pose::Pose;
 pub use scene::*;
+pub use split::SplitMesh;
 
 /// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file. Animated files are at rest.
 ///
