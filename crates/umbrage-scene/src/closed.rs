@@ -1,7 +1,6 @@
 //! Is a mesh the skin of something solid?
 
-use crate::Mesh;
-use std::collections::HashMap;
+use crate::{Mesh, edges::weld};
 
 /// Is the surface closed and turned outwards?
 ///
@@ -15,12 +14,7 @@ pub fn is_closed(mesh: &Mesh) -> bool {
     if mesh.indices.len() < 12 {
         return false;
     }
-    let mut first_at: HashMap<[u32; 3], u32> = HashMap::with_capacity(mesh.positions.len());
-    // Adding zero makes -0 and 0 the same bits.
-    let welded: Vec<u32> = (0u32..)
-        .zip(&mesh.positions)
-        .map(|(i, p)| *first_at.entry((*p + 0.0).to_array().map(f32::to_bits)).or_insert(i))
-        .collect();
+    let welded = weld(&mesh.positions);
     let mut edges: Vec<u64> = Vec::with_capacity(mesh.indices.len());
     let mut volume = 0.0f64;
     let middle = mesh.bounds.center();

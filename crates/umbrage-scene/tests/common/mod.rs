@@ -3,6 +3,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 pub mod glb;
+pub mod volume;
 
 use glam::Vec3;
 use std::path::PathBuf;
