@@ -8,6 +8,7 @@ pub mod bounds;
 pub mod camera;
 pub mod density;
 pub mod depth;
+pub mod edges;
 pub mod fit;
 pub mod frustum;
 pub mod idle;
@@ -16,6 +17,7 @@ pub mod light;
 pub mod lookup;
 pub mod plan;
 pub mod projection;
+pub mod split;
 pub mod technique;
 pub mod wgsl;
 

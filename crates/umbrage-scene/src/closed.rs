@@ -1,6 +1,7 @@
 //! Is a mesh the skin of something solid?
 
-use crate::{Mesh, edges::weld};
+use crate::Mesh;
+use umbrage_core::edges::weld;
 
 /// Is the surface closed and turned outwards?
 ///

@@ -7,7 +7,6 @@ mod builtin;
 mod check;
 mod closed;
 mod defaults;
-mod edges;
 mod error;
 mod flat;
 mod gltf;
@@ -15,18 +14,15 @@ mod normals;
 mod obj;
 mod pose;
 pub mod scene;
-mod split;
 mod tangents;
 
 pub use builtin::{Builtin, builtins};
 pub use closed::is_closed;
 pub use defaults::{add_defaults, add_ground};
-pub use edges::{Adjacency, Edge, EdgeCounts};
 pub use error::SceneError;
 pub use flat::plane_of;
 pub use pose::Pose;
 pub use scene::*;
-pub use split::SplitMesh;
 
 /// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file. Animated files are at rest.
 ///

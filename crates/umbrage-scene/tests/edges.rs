@@ -6,7 +6,9 @@ use common::volume::{End, Random, Soup, far, hidden, open_edges, points_around, 
 use glam::{DVec3, Vec3, Vec4};
 use proptest::prelude::*;
 use std::collections::HashSet;
-use umbrage_scene::{Adjacency, Mesh, SplitMesh, load};
+use umbrage_core::edges::Adjacency;
+use umbrage_core::split::SplitMesh;
+use umbrage_scene::{Mesh, load};
 
 fn mesh(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> Mesh {
     let normals = vec![Vec3::Y; positions.len()];
@@ -118,7 +120,7 @@ fn corners(mesh: &Mesh) -> Vec<[DVec3; 3]> {
 
 /// Compares the volume with rays; how many points were in shadow.
 fn judge(name: &str, mesh: &Mesh, light: Vec4, both_sides: bool, seed: u64) -> usize {
-    let adjacency = Adjacency::new(mesh);
+    let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
     let soup = volume(&adjacency, light, both_sides);
     assert_eq!(open_edges(&soup).len(), 0, "{name}: open, with light {light}");
     let (soup, truth) = (place(&soup, &mesh.positions, light), corners(mesh));
@@ -164,7 +166,7 @@ proptest! {
         let at = at.map(|x| f32::from(x) / 127.0 + 1e-3);
         let light = light(at, seed % 2 == 0);
         judge("scribble", &mesh, light, true, seed);
-        let adjacency = Adjacency::new(&mesh);
+        let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
         prop_assert_eq!(open_edges(&volume(&adjacency, light, false)).len(), 0);
         check_counts(&mesh, &adjacency);
         check_split(&mesh, &adjacency, light);
@@ -174,7 +176,7 @@ proptest! {
     fn a_split_mesh_pulls_out_the_same_volume(number in 0..KINDS, at: [i8; 3], directional: bool) {
         let (_, mesh) = kind(number);
         let at = at.map(|x| f32::from(x) / 64.0);
-        check_split(&mesh, &Adjacency::new(&mesh), light(at, directional));
+        check_split(&mesh, &Adjacency::new(&mesh.positions, &mesh.indices), light(at, directional));
     }
 
     #[test]
@@ -185,11 +187,11 @@ proptest! {
     ) {
         let positions: Vec<Vec3> = bits.iter().map(|b| Vec3::from(b.map(f32::from_bits))).collect();
         let mesh = Mesh { positions, indices, ..Mesh::default() };
-        let adjacency = Adjacency::new(&mesh);
+        let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
         let light = Vec4::from(light.map(f32::from_bits));
         prop_assert_eq!(open_edges(&volume(&adjacency, light, false)).len(), 0);
         prop_assert!(adjacency.planes.iter().all(|p| p.is_finite()));
-        let split = SplitMesh::new(&mesh, &adjacency);
+        let split = SplitMesh::new(&mesh.positions, &adjacency);
         prop_assert!(split.indices.iter().all(|i| (*i as usize) < split.positions.len()));
     }
 }
@@ -234,7 +236,7 @@ fn sorted<const N: usize>(soup: impl IntoIterator<Item = [End; N]>) -> Vec<[End;
 /// What a vertex shader makes of a split mesh, against silhouette and caps; lids as triangles, sides as quads, because
 /// the reverse has the other diagonal. Where nothing is drawn twice, as triangles too.
 fn check_split(mesh: &Mesh, adjacency: &Adjacency, light: Vec4) {
-    let split = SplitMesh::new(mesh, adjacency);
+    let split = SplitMesh::new(&mesh.positions, adjacency);
     let mut names: Vec<u32> = adjacency.triangles.concat();
     // The second corners of open edges' ghosts are found by their place.
     for at in &split.positions[names.len()..] {
@@ -306,7 +308,7 @@ fn a_closed_box_hides_what_is_inside_from_a_light_inside() {
     let light = (middle.as_vec3() + Vec3::splat(0.01)).extend(1.0);
     let dark: usize = (0..20).map(|seed| judge("box", &mesh, light, true, seed)).sum();
     assert!(dark > 50 && dark < 240, "{dark} of 240 points are outside of the box");
-    let front_only = Adjacency::new(&mesh).caps(light, false);
+    let front_only = Adjacency::new(&mesh.positions, &mesh.indices).caps(light, false);
     assert!(front_only.is_empty(), "negative control: no front faces a light inside");
 }
 
@@ -329,7 +331,7 @@ fn a_light_in_a_plane_leaves_nothing_open() {
         ("flat", &flat, Vec4::new(3.0, 0.0, 4.0, 1.0)),
         ("flat", &flat, Vec4::new(1.0, 0.0, 1.0, 0.0)),
     ] {
-        let adjacency = Adjacency::new(mesh);
+        let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
         assert!(adjacency.planes.iter().any(|p| p.dot(light) == 0.0), "{name}: exactly in a plane");
         for seed in 0..20 {
             judge(name, mesh, light, false, seed);
@@ -340,7 +342,7 @@ fn a_light_in_a_plane_leaves_nothing_open() {
 
 #[test]
 fn counts_are_those_of_shapes_that_are_known() {
-    let counts = |number| Adjacency::new(&kind(number).1).counts;
+    let counts = |number| Adjacency::new(&kind(number).1.positions, &kind(number).1.indices).counts;
     let cube = counts(1);
     assert_eq!((cube.vertices, cube.triangles, cube.edges, cube.open), (8, 12, 18, 0));
     assert_eq!((cube.parts, cube.open_parts, cube.degenerate, cube.duplicated), (1, 0, 0, 0));
@@ -357,7 +359,11 @@ fn counts_are_those_of_shapes_that_are_known() {
     assert_eq!((repeated.duplicated, repeated.degenerate, repeated.open), (1, 2, 3));
     let both = counts(7);
     assert_eq!((both.parts, both.open_parts), (2, 1));
-    let one_sided = Adjacency::new(&kind(7).1).two_sided.iter().filter(|two| !**two).count();
+    let one_sided = Adjacency::new(&kind(7).1.positions, &kind(7).1.indices)
+        .two_sided
+        .iter()
+        .filter(|two| !**two)
+        .count();
     assert_eq!(one_sided, 12, "the box casts with its fronts alone, whatever lies beside it");
 }
 
@@ -366,8 +372,8 @@ fn real_meshes_are_paired_in_time() {
     let Some(scene) = common::load_shared("scopia-trees/japaneseMaple/japaneseMaple.obj") else { return };
     for mesh in &scene.meshes {
         let started = std::time::Instant::now();
-        let adjacency = Adjacency::new(mesh);
-        let split = SplitMesh::new(mesh, &adjacency);
+        let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
+        let split = SplitMesh::new(&mesh.positions, &adjacency);
         eprintln!("{:?}: {:?}, {} indices", started.elapsed(), adjacency.counts, split.indices.len());
         assert_eq!(open_edges(&volume(&adjacency, Vec4::new(0.3, 1.0, 0.2, 0.0), false)).len(), 0);
     }

@@ -4,11 +4,10 @@ mod pairing;
 mod silhouette;
 mod weld;
 
-pub(crate) use pairing::{Pair, Pairs, Side, pair};
-pub(crate) use weld::weld;
+pub use pairing::{Pair, Pairs, Side, pair};
+pub use weld::weld;
 
-use crate::Mesh;
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 /// More triangles than this are not looked at: their split form would have more vertices than 32 bits count.
 const MAX_TRIANGLES: usize = (u32::MAX / 9) as usize;
@@ -16,7 +15,7 @@ const MAX_TRIANGLES: usize = (u32::MAX / 9) as usize;
 /// The triangles of a mesh, their planes, and the edges at which they meet. Object space.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Adjacency {
-    /// Corners as indices into [`Mesh::positions`], in the mesh's order and rotation. Of all vertices at one place (the same
+    /// Corners as indices into the mesh's positions, in the mesh's order and rotation. Of all vertices at one place (the same
     /// bits, but -0 is 0) the first stands for all. Triangles with two corners at one place are left out, and so are
     /// those that name no vertex.
     pub triangles: Vec<[u32; 3]>,
@@ -38,7 +37,7 @@ pub struct Adjacency {
 /// triangles' order, and what is left over is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// Where it begins, an index into [`Mesh::positions`] that [`Adjacency::triangles`] uses.
+    /// Where it begins, an index into the mesh's positions that [`Adjacency::triangles`] uses.
     pub a: u32,
     /// Where it ends.
     pub b: u32,
@@ -76,11 +75,11 @@ impl Adjacency {
     /// of many triangles. Up to 477 million triangles are looked at.
     ///
     /// Cost: one sort of three sides a triangle; a quarter of a million triangles take about a tenth of a second.
-    pub fn new(mesh: &Mesh) -> Self {
-        let welded = weld(&mesh.positions);
-        let mut triangles = Vec::with_capacity(mesh.indices.len() / 3);
+    pub fn new(positions: &[Vec3], indices: &[u32]) -> Self {
+        let welded = weld(positions);
+        let mut triangles = Vec::with_capacity(indices.len() / 3);
         let mut degenerate = 0;
-        for corners in mesh.indices.chunks_exact(3).take(MAX_TRIANGLES) {
+        for corners in indices.chunks_exact(3).take(MAX_TRIANGLES) {
             let place = |i: usize| welded.get(corners[i] as usize).copied();
             match (place(0), place(1), place(2)) {
                 (Some(a), Some(b), Some(c)) if a != b && b != c && c != a => triangles.push([a, b, c]),
@@ -96,7 +95,7 @@ impl Adjacency {
             right: pair.right.map(|side| side.face),
         };
         let counts = EdgeCounts {
-            vertices: used(&triangles, mesh.positions.len()),
+            vertices: used(&triangles, positions.len()),
             triangles: triangles.len(),
             edges: distinct,
             open: pairs.iter().filter(|pair| pair.right.is_none()).count(),
@@ -106,7 +105,7 @@ impl Adjacency {
             parts: open.len(),
             open_parts: open.iter().filter(|open| **open).count(),
         };
-        let corner = |i: u32| mesh.positions[i as usize].as_dvec3();
+        let corner = |i: u32| positions[i as usize].as_dvec3();
         Self {
             planes: triangles.iter().map(|t| plane(t.map(corner))).collect(),
             two_sided: part_of.iter().map(|part| open[*part as usize]).collect(),

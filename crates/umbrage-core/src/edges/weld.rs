@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// For each vertex the first one at its place: the same bits, but -0 is 0.
 ///
 /// Cost: one look into a hash table for each vertex.
-pub(crate) fn weld(positions: &[Vec3]) -> Vec<u32> {
+pub fn weld(positions: &[Vec3]) -> Vec<u32> {
     let mut first_at: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     // Adding zero makes -0 and 0 the same bits. No index names a vertex that 32 bits do not count.
     (0..=u32::MAX)

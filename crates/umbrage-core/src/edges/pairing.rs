@@ -2,7 +2,7 @@
 
 /// A side of a face, as its face runs through it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Side {
+pub struct Side {
     /// Where it begins: a welded vertex.
     pub from: u32,
     /// Where it ends. Not `from`.
@@ -15,7 +15,8 @@ pub(crate) struct Side {
 
 /// Two sides that meet, or one that meets none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Pair {
+pub struct Pair {
+    /// The use one way.
     pub left: Side,
     /// Runs the other way. `None`: the edge is open here.
     pub right: Option<Side>,
@@ -23,7 +24,7 @@ pub(crate) struct Pair {
 
 /// All pairs, and what was seen on the way.
 #[derive(Debug, Default)]
-pub(crate) struct Pairs {
+pub struct Pairs {
     /// By edge: lower vertex, then higher.
     pub pairs: Vec<Pair>,
     /// Edges, whatever the number of their faces.
@@ -40,7 +41,7 @@ pub(crate) struct Pairs {
 /// the sides' numbers.
 ///
 /// Cost: one sort of the sides.
-pub(crate) fn pair(mut sides: Vec<Side>, faces: usize) -> Pairs {
+pub fn pair(mut sides: Vec<Side>, faces: usize) -> Pairs {
     let edge = |s: &Side| (s.from.min(s.to), s.from.max(s.to));
     sides.sort_unstable_by_key(|s| (edge(s), s.from > s.to, s.id));
     let mut found = Pairs { pairs: Vec::with_capacity(sides.len() / 2), ..Pairs::default() };
