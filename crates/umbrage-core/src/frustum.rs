@@ -37,6 +37,18 @@ impl Frustum {
             plane.dot(farthest.extend(1.0)) >= 0.0
         })
     }
+
+    /// May anything of the box be inside, or of what it sweeps when each point `p` of it moves along `way(p)` without end? `way`
+    /// is affine. False only when all of it is outside one plane.
+    pub fn may_see_swept(&self, bounds_world: &Aabb, way: impl Fn(Vec3) -> Vec3) -> bool {
+        if bounds_world.is_empty() {
+            return false;
+        }
+        let corners = bounds_world.corners();
+        self.planes_world.iter().all(|plane| {
+            corners.iter().any(|p| plane.dot(p.extend(1.0)) >= 0.0 || plane.xyz().dot(way(*p)) > 0.0)
+        })
+    }
 }
 
 /// May any part of a box be inside a cone without end? The box's sphere is asked, so the answer is never false for a box

@@ -19,6 +19,7 @@ pub mod plan;
 pub mod projection;
 pub mod split;
 pub mod technique;
+pub mod volume;
 pub mod wgsl;
 
 pub use bounds::Aabb;
