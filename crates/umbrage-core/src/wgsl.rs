@@ -73,6 +73,8 @@ pub const MODULES: &[Module] = &[
         "comparisons with all texels that a kernel reaches, blended",
         ["map", "compare", "kernel"]
     ),
+    module!("extrude", "the two ends of a shadow volume, and which triangles face a light", []),
+    module!("like_depth", "which neighbouring pixels are on one surface", []),
     module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
     module!("colored", "colours of four texels, and what they make of comparisons", ["view", "taps"]),
     module!("filter/colored_nearest", "`filter/nearest` with coloured light", ["map", "compare", "colored"]),

@@ -8,6 +8,7 @@ pub mod format;
 pub mod maps;
 pub mod peel;
 pub mod translucent;
+pub mod volume;
 
 pub use caster::{CasterPipelines, CasterStreams, record_caster_pass};
 pub use format::{ChosenFormat, choose_format};

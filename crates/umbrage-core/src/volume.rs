@@ -1,0 +1,127 @@
+//! Where a shadow volume can be seen, and where the eye may be in it.
+
+use crate::bounds::Aabb;
+use crate::frustum::Frustum;
+use crate::light::{Light, LightKind};
+use glam::{Mat4, UVec2, Vec3, Vec4, Vec4Swizzles};
+
+/// A light as volumes are pulled from it: its place and 1, or the direction towards it and 0. World space.
+pub fn light_point_world(light: &Light) -> Vec4 {
+    match light.kind {
+        LightKind::Directional => (-light.direction_world.normalize_or_zero()).extend(0.0),
+        _ => light.position_world.extend(1.0),
+    }
+}
+
+/// The same in a caster's object space, so that `dot(plane, light)` tells whether a triangle faces it. Computed in 64 bits.
+pub fn light_point_object(light_world: Vec4, world_from_object: &Mat4) -> Vec4 {
+    (world_from_object.as_dmat4().inverse() * light_world.as_dvec4()).as_vec4()
+}
+
+/// May a light be inside of a caster, or on it? Then its closed parts have to cast from both sides.
+pub fn light_may_be_inside(light_world: Vec4, bounds_world: &Aabb) -> bool {
+    let margin = 1e-5 * bounds_world.size().max_element();
+    let p = light_world.xyz();
+    light_world.w != 0.0
+        && p.cmpge(bounds_world.min - margin).all()
+        && p.cmple(bounds_world.max + margin).all()
+}
+
+/// The four corners of the eye's near plane, in order around it, world space. `None` where the matrix has no inverse.
+pub fn near_corners_world(clip_from_world: Mat4, ndc_near: f32) -> Option<[Vec3; 4]> {
+    let world_from_clip = clip_from_world.as_dmat4().inverse();
+    let corner = |x: f64, y: f64| {
+        let p = world_from_clip * glam::DVec4::new(x, y, f64::from(ndc_near), 1.0);
+        (p.truncate() / p.w).as_vec3()
+    };
+    let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    corners.iter().all(|p| p.is_finite()).then_some(corners)
+}
+
+/// May the near plane of the eye meet the shadow volume of a caster? If not, faces between eye and surface can be counted, which
+/// needs no caps (Everitt and Kilgard 2002, section 4.4). True when in doubt.
+///
+/// What is between the near plane and the light is a pyramid (a prism for parallel light). A caster whose box lies wholly
+/// outside of one of its sides shadows no point of the near plane.
+pub fn eye_may_be_in_shadow(near_corners_world: &[Vec3; 4], light_world: Vec4, caster_world: &Aabb) -> bool {
+    let middle = near_corners_world.iter().sum::<Vec3>() * 0.25;
+    let to_light = light_world.xyz() - middle * light_world.w;
+    let size = (near_corners_world[2] - near_corners_world[0]).length();
+    let is_outside = |normal: Vec3, through: Vec3| {
+        // The side that the pyramid is on counts as above 0; boxes get as much room as single precision needs.
+        let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), caster_world.max, caster_world.min);
+        let scale = farthest.abs().max(through.abs()).max_element() + size;
+        normal.dot(farthest - through) < -1e-5 * scale * normal.length()
+    };
+    // The near plane itself: nothing on its far side from the light is between them.
+    let across =
+        (near_corners_world[1] - near_corners_world[0]).cross(near_corners_world[3] - near_corners_world[0]);
+    let along = across.normalize_or_zero().dot(to_light.normalize_or_zero());
+    if along.abs() < 1e-3 {
+        // The pyramid is flat, and the signs of its sides are rounding.
+        return true;
+    }
+    if is_outside(across * along.signum(), middle) {
+        return false;
+    }
+    // Seen from the light the corners run one way round or the other.
+    (0..4).all(|i| {
+        let (a, b) = (near_corners_world[i], near_corners_world[(i + 1) % 4]);
+        let side = (b - a).cross(light_world.xyz() - a * light_world.w);
+        let inwards = side * side.dot(middle - a).signum();
+        !is_outside(inwards, a)
+    })
+}
+
+/// May the eye see any of what a caster darkens? `frustum` is the eye's. True when in doubt.
+pub fn shadow_may_be_seen(frustum: &Frustum, light_world: Vec4, caster_world: &Aabb) -> bool {
+    frustum.may_see_swept(caster_world, |p| p * light_world.w - light_world.xyz())
+}
+
+/// Pixels: left, top, width, height.
+pub type Scissor = [u32; 4];
+
+/// The pixels that may show anything that the light reaches: its cone, or the ball of its range, as far as there is
+/// anything. All of them for lights that reach everywhere; `None` when it can reach nothing that is seen.
+pub fn lit_pixels(light: &Light, scene_world: &Aabb, clip_from_world: Mat4, size: UVec2) -> Option<Scissor> {
+    let whole = [0, 0, size.x, size.y];
+    let reach_m = light.range_m.filter(|_| light.kind != LightKind::Directional).unwrap_or(f32::INFINITY);
+    let place = light.position_world;
+    let farthest_m =
+        scene_world.corners().iter().map(|p| p.distance(place)).fold(0.0, f32::max).min(reach_m) * 1.001;
+    let ball = Aabb { min: place - reach_m.min(1e30), max: place + reach_m.min(1e30) };
+    let met = Aabb { min: scene_world.min.max(ball.min), max: scene_world.max.min(ball.max) };
+    let points: Vec<Vec3> = match light.kind {
+        LightKind::Directional => return Some(whole),
+        LightKind::Point if reach_m.is_infinite() => return Some(whole),
+        _ if met.is_empty() => return None,
+        LightKind::Point => met.corners().to_vec(),
+        LightKind::Spot { outer_rad, .. } => {
+            let rotation = light.world_from_light_rotation();
+            let (depth, wide) = (farthest_m, farthest_m * outer_rad.min(1.5).tan() * 1.001);
+            let corner = |x: f32, y: f32| place + rotation * Vec3::new(x * wide, y * wide, -depth);
+            vec![place, corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]
+        }
+    };
+    let (mut least, mut most) = (glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY);
+    for point in points {
+        let clip = clip_from_world * point.extend(1.0);
+        if clip.w <= 1e-6 * clip.xyz().length() {
+            // Beside or behind the eye: its place on the screen says nothing.
+            return Some(whole);
+        }
+        let ndc = clip.xy() / clip.w;
+        (least, most) = (least.min(ndc), most.max(ndc));
+    }
+    let extent = size.as_vec2();
+    let to_px = |ndc: glam::Vec2| (ndc * glam::Vec2::new(0.5, -0.5) + 0.5) * extent;
+    let (a, b) = (to_px(least), to_px(most));
+    let from = (a.min(b).floor() - 1.0).max(glam::Vec2::ZERO).min(extent);
+    let to = (a.max(b).ceil() + 1.0).max(glam::Vec2::ZERO).min(extent);
+    let (from, to) = (from.as_uvec2(), to.as_uvec2());
+    (to.x > from.x && to.y > from.y).then(|| [from.x, from.y, to.x - from.x, to.y - from.y])
+}
+
+#[cfg(test)]
+#[path = "volume_tests.rs"]
+mod tests;

@@ -1,0 +1,193 @@
+//! Stencil shadow volumes: the space that a caster darkens, as polygons that the stencil counts over the caller's depth.
+//!
+//! For each light: [`record_silhouettes`] finds the faces of its casters' volumes (not needed with split edges),
+//! [`record_counts`] counts them, and [`record_visibility`] writes V, 1 where nothing was counted. The depth that is counted
+//! over must be that of the lit surfaces, transformed as `volume.wgsl` does, by the rows of `world_from_object` and then
+//! by `clip_from_world`: then lids and surfaces have equal depths, and equal counts as behind. Where a renderer's arithmetic is
+//! another, an inset puts the lids behind.
+//!
+//! Counts wrap at 256, so that only their end counts, not the order of their faces; a pixel within exactly 256 volumes would be
+//! lit. Without end ([`VolumeCaster::extrude_m`] 0) a far plane may not cut volumes: either the device has
+//! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane.
+
+mod light;
+mod mesh;
+mod pipelines;
+
+pub use light::{VolumeCaster, VolumeLight, Winding};
+pub use mesh::{VolumeMesh, VolumeSource};
+pub use pipelines::{COUNT_FORMATS, VolumePipelines, choose_count_format};
+
+use umbrage_core::technique::volume::{Counting, Stencil};
+
+/// Which faces of a stencil that counts both ways in one draw are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Faces {
+    /// Both, in one draw.
+    Both,
+    /// Those seen from outside.
+    Front,
+    /// Those seen from inside.
+    Back,
+}
+
+impl Faces {
+    /// The passes of a way to count, in order.
+    pub fn passes(stencil: Stencil) -> &'static [Self] {
+        match stencil {
+            Stencil::TwoSided => &[Self::Both],
+            Stencil::TwoPass => &[Self::Back, Self::Front],
+        }
+    }
+}
+
+/// What is counted of a caster: [`Counting`] with `auto` settled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Counted {
+    /// Faces behind the surface.
+    Behind,
+    /// Faces before it.
+    Before,
+}
+
+impl Counted {
+    /// Settles `auto` by whether the eye may be in the caster's shadow.
+    pub fn new(counting: Counting, eye_may_be_in_shadow: bool) -> Self {
+        match counting {
+            Counting::DepthFail => Self::Behind,
+            Counting::DepthPass => Self::Before,
+            Counting::Auto if eye_may_be_in_shadow => Self::Behind,
+            Counting::Auto => Self::Before,
+        }
+    }
+}
+
+/// Records the compute pass that writes the faces of a light's volumes. They hold until light or casters change.
+pub fn record_silhouettes(
+    encoder: &mut wgpu::CommandEncoder,
+    pipelines: &VolumePipelines,
+    light: &VolumeLight,
+    meshes: &[Option<VolumeMesh>],
+    timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+) {
+    let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+        label: Some("silhouettes"),
+        timestamp_writes: timestamps,
+    });
+    let Some(silhouettes) = &pipelines.silhouettes else { return };
+    recorded.set_pipeline(silhouettes);
+    for (number, caster) in light.casters().iter().enumerate() {
+        let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
+        let items = mesh.edges() + if caster.has_caps() { mesh.triangles() } else { 0 };
+        let groups = items.div_ceil(64);
+        if groups == 0 {
+            continue;
+        }
+        // A dispatch has 65,535 groups along an axis at most.
+        let rows = groups.div_ceil(65_535);
+        recorded.set_bind_group(0, &light.silhouette_group, &[light.offset(number, false)]);
+        recorded.set_bind_group(1, &mesh.edge_group, &[]);
+        recorded.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
+    }
+}
+
+/// Records one of the passes that count a light's volumes. `draw` says which casters, by their numbers, and how each is counted;
+/// `depth_stencil` keeps its depth. `clears` is true for the first pass of a light. `scissor` is left, top, width, height, pixels.
+#[allow(clippy::too_many_arguments, reason = "a pass has a target, a state and what is drawn")]
+pub fn record_counts(
+    encoder: &mut wgpu::CommandEncoder,
+    pipelines: &VolumePipelines,
+    light: &VolumeLight,
+    meshes: &[Option<VolumeMesh>],
+    depth_stencil: &wgpu::TextureView,
+    faces: Faces,
+    clears: bool,
+    scissor: [u32; 4],
+    draw: &[(usize, Counted)],
+    timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) {
+    let load = if clears { wgpu::LoadOp::Clear(0) } else { wgpu::LoadOp::Load };
+    let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("volumes"),
+        color_attachments: &[],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth_stencil,
+            depth_ops: None,
+            stencil_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
+        }),
+        timestamp_writes: timestamps,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    let [x, y, width, height] = scissor;
+    recorded.set_scissor_rect(x, y, width, height);
+    draw_volumes(&mut recorded, light, meshes, draw, |counted, winding| {
+        pipelines.counts(counted, faces, winding)
+    });
+}
+
+/// Draws volumes with pipelines of one's own: `pipeline` is asked for each draw.
+pub fn draw_volumes<'a>(
+    recorded: &mut wgpu::RenderPass<'_>,
+    light: &VolumeLight,
+    meshes: &[Option<VolumeMesh>],
+    draw: &[(usize, Counted)],
+    pipeline: impl Fn(Counted, Winding) -> &'a wgpu::RenderPipeline,
+) {
+    for (number, counted) in draw {
+        let Some(caster) = light.casters().get(*number) else { continue };
+        let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
+        match mesh.split() {
+            None => {
+                recorded.set_pipeline(pipeline(*counted, caster.winding));
+                recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, false)]);
+                recorded.set_bind_group(1, &mesh.position_group, &[]);
+                recorded.set_index_buffer(light.indices.slice(..), wgpu::IndexFormat::Uint32);
+                recorded.draw_indexed_indirect(&light.counts, light.counts_offset(*number));
+            }
+            Some(split) => {
+                recorded.set_vertex_buffer(0, split.vertices.slice(..));
+                recorded.set_index_buffer(split.indices.slice(..), wgpu::IndexFormat::Uint32);
+                for (range, reversed) in split.draws(caster.both_sides) {
+                    recorded.set_pipeline(pipeline(*counted, caster.winding.turned(reversed)));
+                    recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, reversed)]);
+                    recorded.set_bind_group(1, &mesh.position_group, &[]);
+                    recorded.draw_indexed(range, 0, 0..1);
+                }
+            }
+        }
+    }
+}
+
+/// Records the pass that writes V of a light: 1 where the stencil counted nothing, 0 elsewhere.
+pub fn record_visibility(
+    encoder: &mut wgpu::CommandEncoder,
+    pipelines: &VolumePipelines,
+    depth_stencil: &wgpu::TextureView,
+    v: &wgpu::TextureView,
+    timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) {
+    let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("visibility"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: v,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth_stencil,
+            depth_ops: None,
+            stencil_ops: None,
+        }),
+        timestamp_writes: timestamps,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    recorded.set_pipeline(&pipelines.visibility);
+    recorded.set_stencil_reference(0);
+    recorded.draw(0..3, 0..1);
+}
