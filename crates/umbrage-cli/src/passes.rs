@@ -4,7 +4,7 @@ use crate::args::PassesArgs;
 use crate::fault::{Fault, say};
 use crate::{json, setup};
 use serde_json::json;
-use umbrage_render::umbrage::core::plan::{Cull, Draws, Keeps, Pass, Target, plan};
+use umbrage_render::umbrage::core::plan::{Cull, Draws, Keeps, Pass, StencilUse, Target, plan};
 
 /// Prints the passes in the order in which they run.
 ///
@@ -34,6 +34,10 @@ fn describe(pass: &Pass) -> serde_json::Value {
         Target::Layer { size_texel } => {
             json!({ "kind": "layer", "storage": "depth32f", "size_texel": size_texel })
         }
+        Target::Depth => json!({ "kind": "depth" }),
+        Target::Faces => json!({ "kind": "faces" }),
+        Target::Stencil => json!({ "kind": "stencil" }),
+        Target::Visibility => json!({ "kind": "visibility" }),
         Target::Picture => json!({ "kind": "picture" }),
     };
     json!({
@@ -45,6 +49,8 @@ fn describe(pass: &Pass) -> serde_json::Value {
         "cull": match pass.cull {
             Cull::BackOfClosed => "back-of-closed",
             Cull::FrontOfClosed => "front-of-closed",
+            Cull::Front => "front",
+            Cull::Back => "back",
             Cull::Nothing => "nothing",
             Cull::ByMaterial => "by-material",
         },
@@ -53,11 +59,22 @@ fn describe(pass: &Pass) -> serde_json::Value {
             Keeps::Behind => "behind",
             Keeps::Midpoint => "midpoint",
         },
+        "stencil": match pass.stencil {
+            StencilUse::Unused => "unused",
+            StencilUse::CountsBoth => "counts-both",
+            StencilUse::CountsBack => "counts-back",
+            StencilUse::CountsFront => "counts-front",
+            StencilUse::IsZero => "is-zero",
+        },
         "polygon_offset": { "constant": pass.offset.constant, "slope": json::decimal(pass.offset.slope) },
         "draws": match pass.draws {
             Draws::Casters => "casters",
             Draws::Translucent => "translucent",
             Draws::Surfaces => "surfaces",
+            Draws::Depths => "depths",
+            Draws::Edges => "edges",
+            Draws::Volumes => "volumes",
+            Draws::Screen => "screen",
         },
     })
 }

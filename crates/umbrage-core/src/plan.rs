@@ -4,6 +4,7 @@
 //! surfaces are lit is the renderer's own affair: the reference renderer draws them into a G-buffer first.
 
 use crate::DEPTH;
+use crate::technique::volume::{Silhouette, Soften, Stencil, Volume};
 use crate::technique::{Bias, Method, Settings, Storage};
 
 /// Where a pass draws.
@@ -34,8 +35,33 @@ pub enum Target {
         /// Width and height, texels.
         size_texel: u32,
     },
+    /// The caller's depth, which later passes count over.
+    Depth,
+    /// Indices and draw arguments of a light's volumes, in buffers.
+    Faces,
+    /// The stencil of the caller's depth.
+    Stencil,
+    /// The light's layer of V on the screen.
+    Visibility,
     /// The caller's picture and its depth.
     Picture,
+}
+
+/// What a pass does with the stencil.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StencilUse {
+    /// Nothing.
+    #[default]
+    Unused,
+    /// Counts both kinds of faces in one draw, each its own way. The first pass of a light begins with 0.
+    CountsBoth,
+    /// Counts faces seen from inside: up where they lie behind the surface (depth-fail), down where they lie before it
+    /// (depth-pass). The first pass of a light begins with 0.
+    CountsBack,
+    /// Counts faces seen from outside, the other way.
+    CountsFront,
+    /// Draws only where nothing was counted.
+    IsZero,
 }
 
 /// What is kept of all surfaces that lie behind each other in a texel.
@@ -61,6 +87,14 @@ pub enum Draws {
     Translucent,
     /// All that is seen, with material and light; visibility is looked up inline.
     Surfaces,
+    /// All that is seen, depth only.
+    Depths,
+    /// Nothing: a compute pass looks at every edge of every caster.
+    Edges,
+    /// The sides of volumes, and their lids where faces are counted behind the surface.
+    Volumes,
+    /// One triangle over the picture.
+    Screen,
 }
 
 /// Which faces are left out.
@@ -71,6 +105,10 @@ pub enum Cull {
     BackOfClosed,
     /// Front faces of casters that are closed: who enters a solid must leave it. All faces of all others.
     FrontOfClosed,
+    /// Faces seen from outside.
+    Front,
+    /// Faces seen from inside.
+    Back,
     /// None: light passes both sides of a bottle, and what lies behind others are also casters that shadow nothing.
     Nothing,
     /// As each material says.
@@ -104,6 +142,8 @@ pub struct Pass {
     pub cull: Cull,
     /// What is kept where surfaces lie behind each other.
     pub keeps: Keeps,
+    /// What is done with the stencil.
+    pub stencil: StencilUse,
     /// Polygon offset.
     pub offset: PolygonOffset,
     /// What is drawn.
@@ -120,6 +160,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
         color: true,
         cull: Cull::ByMaterial,
         keeps: Keeps::Nearest,
+        stencil: StencilUse::Unused,
         offset: PolygonOffset::default(),
         draws: Draws::Surfaces,
     };
@@ -137,6 +178,7 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
                     _ => Cull::BackOfClosed,
                 },
                 keeps: if combination.bias == Bias::Midpoint { Keeps::Midpoint } else { Keeps::Nearest },
+                stencil: StencilUse::Unused,
                 offset: polygon_offset(settings, combination.bias),
                 draws: Draws::Casters,
             };
@@ -163,8 +205,58 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
             };
             vec![map, colors, nearest, lighting]
         }
-        _ => vec![lighting],
+        Method::Volume(volume) => {
+            let mut passes = volume_passes(&volume, &lighting);
+            passes.push(lighting);
+            passes
+        }
+        Method::None | Method::Mask(_) => vec![lighting],
     }
+}
+
+/// The passes of a volume before surfaces are lit. Depth is drawn by whoever lights them: all else is counted over it.
+fn volume_passes(volume: &Volume, lighting: &Pass) -> Vec<Pass> {
+    let depth =
+        Pass { name: "layZ", target: Target::Depth, color: false, draws: Draws::Depths, ..lighting.clone() };
+    let find = Pass {
+        name: "silhouettes",
+        per_light: true,
+        target: Target::Faces,
+        cull: Cull::Nothing,
+        draws: Draws::Edges,
+        ..depth.clone()
+    };
+    let count = |name, cull, stencil| Pass {
+        name,
+        cull,
+        stencil,
+        target: Target::Stencil,
+        draws: Draws::Volumes,
+        ..find.clone()
+    };
+    let mask = Pass {
+        name: "mask",
+        target: Target::Visibility,
+        color: true,
+        stencil: StencilUse::IsZero,
+        draws: Draws::Screen,
+        ..find.clone()
+    };
+    let blur = |name| Pass { name, stencil: StencilUse::Unused, ..mask.clone() };
+    let mut passes = vec![depth];
+    passes.extend((volume.silhouette == Silhouette::Compute).then(|| find.clone()));
+    passes.extend(match volume.stencil {
+        Stencil::TwoSided => vec![count("back+front", Cull::Nothing, StencilUse::CountsBoth)],
+        Stencil::TwoPass => vec![
+            count("back", Cull::Front, StencilUse::CountsBack),
+            count("front", Cull::Back, StencilUse::CountsFront),
+        ],
+    });
+    passes.push(mask.clone());
+    if volume.soften == Soften::Blur {
+        passes.extend([blur("blur-rows"), blur("blur-columns")]);
+    }
+    passes
 }
 
 /// The pass that draws one layer of a depth peel, 0 being the nearest.
@@ -177,6 +269,7 @@ pub fn peel_pass(size_texel: u32, layer: u32) -> Pass {
         color: false,
         cull: Cull::Nothing,
         keeps: if layer == 0 { Keeps::Nearest } else { Keeps::Behind },
+        stencil: StencilUse::Unused,
         offset: PolygonOffset::default(),
         draws: Draws::Casters,
     }
@@ -224,35 +317,76 @@ impl std::fmt::Display for Pass {
             Target::Layer { size_texel } => {
                 format!("{size_texel}x{size_texel} {}, read by the next pass", Storage::Depth32Float.row().id)
             }
+            Target::Depth => "the picture's depth".to_owned(),
+            Target::Faces => {
+                "indices and draw arguments of the light's volumes; kept until light or caster moves"
+                    .to_owned()
+            }
+            Target::Stencil => "the stencil of the picture's depth".to_owned(),
+            Target::Visibility => "V on the screen, r8unorm, the light's layer".to_owned(),
             Target::Picture => "the picture and its depth".to_owned(),
         };
         let compare = if DEPTH.is_reversed() { "greater-equal" } else { "less-equal" };
         let cull = match self.cull {
             Cull::BackOfClosed => "back faces of closed casters culled",
             Cull::FrontOfClosed => "front faces of closed casters culled",
+            Cull::Front => "front faces culled",
+            Cull::Back => "back faces culled",
             Cull::Nothing => "no faces culled",
             Cull::ByMaterial => "back faces culled unless double sided",
         };
         let draws = match self.draws {
             Draws::Casters => "casters, positions only; cut-out casters with their texture",
             Draws::Translucent => "translucent casters with base colour, texture and alpha",
+            Draws::Depths => "surfaces, depth only (the reference renderer: its G-buffer)",
+            Draws::Edges => {
+                "nothing: a compute pass writes two triangles for each silhouette edge, and lids where they count"
+            }
+            Draws::Volumes => {
+                "sides of volumes, and their lids for casters that are counted behind the surface"
+            }
+            Draws::Screen => "one triangle over the picture",
             Draws::Surfaces => {
                 "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
             }
         };
-        let is_colors = matches!(self.target, Target::Colors { .. });
-        let color = match self.color {
-            true if is_colors => "colours multiplied, depth of the light's map read only",
-            true => "colour and depth",
-            false => "depth only",
-        };
         writeln!(f, "{}{}", self.name, if self.per_light { " (one for each shadowed light)" } else { "" })?;
         writeln!(f, "  target  {target}")?;
-        match self.target {
-            Target::Colors { .. } => writeln!(f, "  clear   white")?,
+        match (&self.target, self.stencil) {
+            (Target::Faces, _) => writeln!(f, "  clear   counts 0")?,
+            (Target::Stencil, StencilUse::CountsFront) => writeln!(f, "  clear   nothing")?,
+            (Target::Stencil, _) => writeln!(f, "  clear   stencil 0")?,
+            (Target::Visibility, StencilUse::IsZero) => writeln!(f, "  clear   V 0")?,
+            (Target::Visibility, _) => writeln!(f, "  clear   nothing")?,
+            (Target::Colors { .. }, _) => writeln!(f, "  clear   white")?,
             _ => writeln!(f, "  clear   depth {}", self.clear_depth)?,
         }
-        write!(f, "  state   {color}, depth {compare}, {cull}")?;
+        let nearer = if DEPTH.is_reversed() { "greater" } else { "less" };
+        match (&self.target, self.stencil) {
+            (Target::Faces, _) => write!(f, "  state   none")?,
+            (Target::Stencil, stencil) => {
+                let counts = match stencil {
+                    StencilUse::CountsBack => "back faces behind the surface up, or before it down",
+                    StencilUse::CountsFront => "front faces behind the surface down, or before it up",
+                    _ => "back faces behind the surface up and front faces down, or before it down and up",
+                };
+                write!(f, "  state   stencil only, wrapping: {counts}; depth {nearer}, {cull}")?;
+            }
+            (Target::Visibility, StencilUse::IsZero) => {
+                write!(f, "  state   writes 1 where the stencil is 0")?
+            }
+            (Target::Visibility, _) => write!(f, "  state   weighted mean across like depths")?,
+            _ => {
+                let color = match self.color {
+                    true if matches!(self.target, Target::Colors { .. }) => {
+                        "colours multiplied, depth of the light's map read only"
+                    }
+                    true => "colour and depth",
+                    false => "depth only",
+                };
+                write!(f, "  state   {color}, depth {compare}, {cull}")?;
+            }
+        }
         if self.offset != PolygonOffset::default() {
             write!(f, ", polygon offset slope {} constant {}", self.offset.slope, self.offset.constant)?;
         }
@@ -283,6 +417,23 @@ mod tests {
             assert_eq!(passes.last().map(|p| p.draws), Some(Draws::Surfaces), "{}", technique.id);
             assert_eq!(passes.len() > 1, technique.method != Method::None, "{}", technique.id);
         }
+    }
+
+    #[test]
+    fn a_volume_lays_depth_counts_and_lights() {
+        let names = |id, pairs: &[(&str, &str)]| -> Vec<&'static str> {
+            let settings = Settings::new(id, pairs.iter().copied()).expect("valid");
+            plan(&settings).iter().map(|pass| pass.name).collect()
+        };
+        assert_eq!(names("volume", &[]), ["layZ", "silhouettes", "back+front", "mask", "lighting"]);
+        let classic = [("stencil", "two-pass"), ("silhouette", "vertex")];
+        assert_eq!(names("volume", &classic), ["layZ", "back", "front", "mask", "lighting"]);
+        let soft = ["layZ", "silhouettes", "back+front", "mask", "blur-rows", "blur-columns", "lighting"];
+        assert_eq!(names("volume-soft", &[]), soft);
+        let text: Vec<_> =
+            plan(&Settings::new("volume", classic).expect("valid")).iter().map(Pass::to_string).collect();
+        assert!(text[1].contains("stencil 0") && text[1].contains("front faces culled"), "{}", text[1]);
+        assert!(text[2].contains("clear   nothing") && text[2].contains("back faces culled"), "{}", text[2]);
     }
 
     #[test]

@@ -24,8 +24,14 @@ pub struct FrameBindings {
 }
 
 impl FrameBindings {
-    /// Makes buffers and samplers; uploads slides and what is given.
-    pub fn new(gpu: &Gpu, layouts: Layouts, options: &RenderOptions, slide_images: &[&Image]) -> Self {
+    /// Makes buffers and samplers; uploads slides and what is given. `screen_v` is V that is found on the screen.
+    pub fn new(
+        gpu: &Gpu,
+        layouts: Layouts,
+        options: &RenderOptions,
+        slide_images: &[&Image],
+        screen_v: Option<wgpu::TextureView>,
+    ) -> Self {
         let uniform = |label, bytes: usize| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -63,7 +69,7 @@ impl FrameBindings {
             point: umbrage::maps::point_sampler(&gpu.device),
             slides: crate::textures::slides(&gpu.device, &gpu.queue, slide_images),
             slide_sampler,
-            given: crate::textures::given(&gpu.device, &gpu.queue, options),
+            given: screen_v.unwrap_or_else(|| crate::textures::given(&gpu.device, &gpu.queue, options)),
             layouts,
         }
     }

@@ -37,8 +37,21 @@ struct Item {
     closed: bool,
     /// Has it holes that light passes?
     cut_out: bool,
+    /// Is it one that only maps can draw?
+    by_map: bool,
     /// The plane that it lies in, if it is flat.
     plane_world: Option<Vec4>,
+}
+
+/// A caster of which a volume can be made.
+#[derive(Clone, Copy, Debug)]
+pub struct VolumeItem {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// Where it is.
+    pub world_from_object: Mat4,
+    /// Box around it.
+    pub bounds_world: Aabb,
 }
 
 /// All instances of a scene in drawing order.
@@ -107,8 +120,14 @@ fn shapes(scene: &Scene) -> Vec<Shape> {
 
 impl Items {
     /// Sorts a scene's instances by pipeline, material and mesh. Vertices may be moved by `reach_m`; what is moved is neither
-    /// flat nor closed for certain.
-    pub fn new(scene: &Scene, geometry: &Geometry, materials: &[MaterialEntry], reach_m: f32) -> Self {
+    /// flat nor closed for certain. `by_map`: for each mesh, whether it is one that only maps can draw.
+    pub fn new(
+        scene: &Scene,
+        geometry: &Geometry,
+        materials: &[MaterialEntry],
+        reach_m: f32,
+        by_map: &[bool],
+    ) -> Self {
         let shapes = shapes(scene);
         let item = |(instance, placed): (usize, &umbrage_scene::Instance)| {
             let material = scene.meshes[placed.mesh].material;
@@ -121,6 +140,7 @@ impl Items {
                 bounds_world: Aabb::EMPTY,
                 closed: false,
                 cut_out: geometry.meshes[placed.mesh].uv_alpha_offset.is_some(),
+                by_map: by_map[placed.mesh],
                 plane_world: None,
             };
             item.place(placed.world_from_object, &shapes[placed.mesh], reach_m);
@@ -185,12 +205,57 @@ impl Items {
         batches(seen.into_iter().map(|item| (item, false)), instances)
     }
 
+    /// Box around all instances, world space.
+    pub fn whole(&self) -> Aabb {
+        self.items.iter().fold(Aabb::EMPTY, |all, item| all.union(&item.bounds_world))
+    }
+
+    /// Is an item flat, and nothing behind it?
+    fn is_idle(&self, light: &Light, item: &Item, tolerance_m: f32) -> bool {
+        let others = self.items.iter().filter(|other| other.instance != item.instance);
+        let receivers = others.map(|other| other.bounds_world);
+        item.plane_world.is_some_and(|plane| flat_caster_is_idle(light, plane, receivers, tolerance_m))
+    }
+
+    /// Everything of which a volume can be made and that may throw a shadow; with `all` also what can be shown to shadow nothing.
+    pub fn volume_casters<'a>(
+        &'a self,
+        light: &'a Light,
+        all: bool,
+    ) -> impl Iterator<Item = VolumeItem> + 'a {
+        let tolerance_m = 1e-6 * self.whole().size().max_element();
+        let is_lit = |bounds: &Aabb| {
+            let in_range =
+                light.range_m.filter(|_| light.kind != LightKind::Directional).is_none_or(|range_m| {
+                    let nearest = light.position_world.clamp(bounds.min, bounds.max);
+                    nearest.distance(light.position_world) <= range_m
+                });
+            let in_cone = match light.kind {
+                LightKind::Spot { outer_rad, .. } => {
+                    cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds)
+                }
+                _ => true,
+            };
+            in_range && in_cone
+        };
+        let is_needed = move |item: &&Item| {
+            let is_caster = !item.by_map && !item.bounds_world.is_empty() && is_lit(&item.bounds_world);
+            is_caster && (all || !self.is_idle(light, item, tolerance_m))
+        };
+        self.items.iter().filter(is_needed).map(|item| VolumeItem {
+            mesh: item.mesh,
+            world_from_object: item.world_from_object,
+            bounds_world: item.bounds_world,
+        })
+    }
+
     /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing. `cull` is the
-    /// pass's.
+    /// pass's; with `by_map` only those that nothing but maps can draw.
     pub fn casters(
         &self,
         (light, view): (&Light, &ShadowView),
         all: bool,
+        by_map: bool,
         cull: Cull,
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<Batch> {
@@ -198,13 +263,7 @@ impl Items {
         let in_front = |bounds: &Aabb| {
             bounds.corners().iter().all(|p| -view.light_from_world.transform_point3(*p).z > view.near_m)
         };
-        let whole = self.items.iter().fold(Aabb::EMPTY, |all, item| all.union(&item.bounds_world));
-        let tolerance_m = 1e-6 * whole.size().max_element();
-        let is_idle = |item: &Item| {
-            let others = self.items.iter().filter(|other| other.instance != item.instance);
-            let receivers = others.map(|other| other.bounds_world);
-            item.plane_world.is_some_and(|plane| flat_caster_is_idle(light, plane, receivers, tolerance_m))
-        };
+        let tolerance_m = 1e-6 * self.whole().size().max_element();
         let in_cone = |bounds: &Aabb| match light.kind {
             LightKind::Spot { outer_rad, .. } => {
                 cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds)
@@ -213,15 +272,18 @@ impl Items {
         };
         // What shadows nothing may still be what lies behind the nearest surface.
         let layered = cull == Cull::Nothing;
-        let is_needed = |item: &Item| all || (in_cone(&item.bounds_world) && (layered || !is_idle(item)));
+        let is_needed = |item: &Item| {
+            all || (in_cone(&item.bounds_world) && (layered || !self.is_idle(light, item, tolerance_m)))
+        };
         let one_sided = |item: &Item| match cull {
             Cull::BackOfClosed => item.closed && in_front(&item.bounds_world),
             // What enters through a hole may meet the inside of a back face. Where the near plane, or the light itself, is inside
             // of a solid, the way out is still through its back faces.
             Cull::FrontOfClosed => item.closed && !item.cut_out,
-            Cull::Nothing | Cull::ByMaterial => false,
+            Cull::Front | Cull::Back | Cull::Nothing | Cull::ByMaterial => false,
         };
-        let seen = self.items.iter().filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
+        let of_kind = self.items.iter().filter(|item| item.by_map || !by_map);
+        let seen = of_kind.filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
         batches(seen.map(|item| (item, one_sided(item))), instances)
     }
 }

@@ -108,17 +108,32 @@ impl Renderer<'_> {
             pass += of_map.len() as u32;
             work.extend(of_map);
         }
-        // 2. Surfaces, into the G-buffer or lit at once.
-        self.record_surfaces(&mut encoder, &queries, pass);
-        work.push(self.work_of(&self.solid));
-        pass += 1;
-        // 3. Light on the G-buffer, or a debug view of it.
+        // 2. Surfaces, into the G-buffer.
+        if let Some(gbuffer) = &self.targets.gbuffer {
+            self.record_surfaces(&mut encoder, gbuffer, &queries, pass);
+            work.push(self.work_of(&self.solid));
+            pass += 1;
+        }
+        // 3. What is counted over them.
+        if let Some(mut volumes) = self.volumes.take() {
+            let (reuse, size) = (self.options.reuse, self.options.size);
+            let done =
+                volumes.record(self.gpu, &mut encoder, &self.targets.depth, size, reuse, (&queries, pass));
+            self.volumes = Some(volumes);
+            pass += done.len() as u32;
+            work.extend(done);
+        }
+        // 4. Light on the G-buffer, or a debug view of it; or on surfaces as they are drawn.
         if self.screen.is_some() {
             self.record_screen(&mut encoder, &queries, pass);
             work.push(Work { draws: 1, instances: 1, triangles: 1, vertices: 3 });
             pass += 1;
+        } else {
+            self.record_lit_surfaces(&mut encoder, &queries, pass);
+            work.push(self.work_of(&self.solid));
+            pass += 1;
         }
-        // 4. What is mixed by alpha, over it.
+        // 5. What is mixed by alpha, over it.
         if self.blends() {
             self.record_blended(&mut encoder, &queries, pass);
             work.push(self.work_of(&self.blended));
@@ -231,48 +246,47 @@ impl Renderer<'_> {
         let of_view =
             |view: &usize| of_map.iter().map(move |name| format!("{name} {view}")).collect::<Vec<_>>();
         let mut names: Vec<String> = drawn.iter().flat_map(of_view).collect();
-        names.push(if self.screen.is_some() { "surfaces" } else { "lit surfaces" }.to_owned());
-        if self.screen.is_some() {
-            names.push(match self.options.view {
-                View::Final | View::Light => "lighting".to_owned(),
-                other => other.id().to_owned(),
-            });
+        if self.targets.gbuffer.is_some() {
+            names.push("surfaces".to_owned());
         }
+        names.extend(self.volumes.iter().flat_map(|volumes| volumes.pass_names(self.options.reuse)));
+        names.push(match self.options.view {
+            _ if self.screen.is_none() => "lit surfaces".to_owned(),
+            View::Final | View::Light => "lighting".to_owned(),
+            other => other.id().to_owned(),
+        });
         if self.blends() {
             names.push("blended".to_owned());
         }
         names
     }
 
-    fn record_surfaces(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
-        let cleared = self.cleared();
-        let (view, resolve_target, clear, target) = match (&self.targets.gbuffer, &self.targets.multisampled)
-        {
-            (Some(gbuffer), _) => (gbuffer, None, wgpu::Color::TRANSPARENT, MeshTarget::Gbuffer),
-            (None, Some(samples)) => {
-                let target = MeshTarget::Forward { samples: self.options.samples };
-                (samples, (!self.blends()).then_some(&self.targets.output_view), cleared, target)
-            }
-            (None, None) => (
-                &self.targets.output_view,
-                None,
-                cleared,
-                MeshTarget::Forward { samples: self.options.samples },
-            ),
-        };
-        let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("surfaces"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(depth(&self.targets.depth, wgpu::LoadOp::Clear(DEPTH.clear()))),
-            timestamp_writes: queries.stamps(pass),
-            occlusion_query_set: None,
-            multiview_mask: None,
+    fn record_surfaces(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        gbuffer: &wgpu::TextureView,
+        queries: &Queries,
+        pass: u32,
+    ) {
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        let target = (gbuffer, None, clear);
+        let depth = depth(&self.targets.depth, wgpu::LoadOp::Clear(DEPTH.clear()));
+        let mut recorded = mesh_pass(encoder, "surfaces", target, depth, queries.stamps(pass));
+        queries.count(&mut recorded, pass, |recorded| {
+            self.draw_meshes(recorded, &self.solid, MeshTarget::Gbuffer);
         });
+    }
+
+    fn record_lit_surfaces(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
+        let clear = wgpu::LoadOp::Clear(self.cleared());
+        let output = &self.targets.output_view;
+        let target = match &self.targets.multisampled {
+            Some(samples) => (samples, (!self.blends()).then_some(output), clear),
+            None => (output, None, clear),
+        };
+        let depth = depth(self.targets.forward_depth(), wgpu::LoadOp::Clear(DEPTH.clear()));
+        let mut recorded = mesh_pass(encoder, "lit surfaces", target, depth, queries.stamps(pass));
+        let target = MeshTarget::Forward { samples: self.options.samples };
         queries.count(&mut recorded, pass, |recorded| self.draw_meshes(recorded, &self.solid, target));
     }
 
@@ -309,23 +323,13 @@ impl Renderer<'_> {
     }
 
     fn record_blended(&self, encoder: &mut wgpu::CommandEncoder, queries: &Queries, pass: u32) {
-        let (view, resolve_target) = match &self.targets.multisampled {
-            Some(samples) => (samples, Some(&self.targets.output_view)),
-            None => (&self.targets.output_view, None),
+        let output = &self.targets.output_view;
+        let target = match &self.targets.multisampled {
+            Some(samples) => (samples, Some(output), wgpu::LoadOp::Load),
+            None => (output, None, wgpu::LoadOp::Load),
         };
-        let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("blended"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(depth(&self.targets.depth, wgpu::LoadOp::Load)),
-            timestamp_writes: queries.stamps(pass),
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
+        let depth = depth(self.targets.forward_depth(), wgpu::LoadOp::Load);
+        let mut recorded = mesh_pass(encoder, "blended", target, depth, queries.stamps(pass));
         let target = MeshTarget::Forward { samples: self.options.samples };
         queries.count(&mut recorded, pass, |recorded| self.draw_meshes(recorded, &self.blended, target));
     }
@@ -346,6 +350,29 @@ impl Renderer<'_> {
             recorded.draw_indexed(mesh.indices.clone(), 0, batch.instances.clone());
         }
     }
+}
+
+/// Begins a pass that draws meshes: target, what it is resolved to, and how it begins.
+fn mesh_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    (view, resolve_target, load): (&wgpu::TextureView, Option<&wgpu::TextureView>, wgpu::LoadOp<wgpu::Color>),
+    depth: wgpu::RenderPassDepthStencilAttachment<'_>,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(depth),
+        timestamp_writes,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    })
 }
 
 fn depth(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {

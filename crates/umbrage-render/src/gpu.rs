@@ -50,6 +50,19 @@ const MEASURING: wgpu::Features =
 /// Used where the adapter has it; casters that a map's near plane would cut then still throw their whole shadow.
 const UNCLIPPED: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL;
 
+/// Used where the adapter has it: stencil volumes then count over the most precise depth.
+const STENCIL: wgpu::Features = wgpu::Features::DEPTH32FLOAT_STENCIL8;
+
+/// Optional features that `UMBRAGE_WITHOUT` can take away, by the names that it knows them by.
+const DENIABLE: [(&str, wgpu::Features); 2] =
+    [("depth-clip-control", UNCLIPPED), ("depth32f-stencil8", STENCIL)];
+
+/// What the environment says is lacking.
+fn denied() -> Vec<String> {
+    let denied = std::env::var("UMBRAGE_WITHOUT").unwrap_or_default();
+    denied.split(',').map(|id| id.trim().to_owned()).collect()
+}
+
 /// One line; out of memory with the way out of it.
 fn described(error: &wgpu::Error) -> String {
     match error {
@@ -68,6 +81,18 @@ impl Gpu {
     /// # Errors
     /// [`RenderError::NoAdapter`] says what there is, or what to install; [`RenderError::NoDevice`].
     pub fn new(name: Option<&str>) -> Result<Self, RenderError> {
+        let denied = denied();
+        let is_denied = |(id, _): &&(&str, wgpu::Features)| denied.iter().any(|other| other == id);
+        let without =
+            DENIABLE.iter().filter(is_denied).fold(wgpu::Features::empty(), |all, (_, one)| all | *one);
+        Self::without(name, without)
+    }
+
+    /// The same, as if the adapter lacked some optional features: to see what another would be given.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn without(name: Option<&str>, without: wgpu::Features) -> Result<Self, RenderError> {
         let adapters = adapters();
         let wanted = name.map(str::to_lowercase);
         let found = adapters.iter().find(|adapter| {
@@ -92,7 +117,7 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("umbrage"),
-            required_features: adapter.features() & (MEASURING | UNCLIPPED),
+            required_features: adapter.features() & (MEASURING | UNCLIPPED | STENCIL).difference(without),
             required_limits: limits,
             ..Default::default()
         }))
@@ -111,12 +136,10 @@ impl Gpu {
     }
 
     /// What the adapter allows for a texture format. `UMBRAGE_WITHOUT=depth16,depth24` pretends that formats are
-    /// lacking, to see what another adapter would be given.
+    /// lacking, and with `depth-clip-control` and `depth32f-stencil8` features, to see what another adapter would be given.
     pub fn usages_of(&self, format: wgpu::TextureFormat) -> wgpu::TextureUsages {
-        let denied = std::env::var("UMBRAGE_WITHOUT").unwrap_or_default();
-        let is_denied = denied.split(',').any(|id| {
-            umbrage::core::technique::Storage::find(id.trim()).and_then(umbrage::format::format_of)
-                == Some(format)
+        let is_denied = denied().iter().any(|id| {
+            umbrage::core::technique::Storage::find(id).and_then(umbrage::format::format_of) == Some(format)
         });
         if is_denied {
             return wgpu::TextureUsages::empty();

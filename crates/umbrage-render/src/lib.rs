@@ -26,12 +26,14 @@ pub mod picture;
 mod pipelines;
 mod readback;
 mod renderer;
+mod screen_v;
 mod shaders;
 mod surfaces;
 mod targets;
 mod textures;
 mod threaded;
 mod timing;
+mod volumes;
 
 pub use deform::deformed;
 pub use density::{DensityStatistics, EDGE_ON_COS, OctaveShare, PERCENTILES, Spread};

@@ -196,6 +196,8 @@ pub(crate) struct MapMaker {
     /// Width of the picture over its height.
     pub aspect: f32,
     pub all_casters: bool,
+    /// Only casters that the technique's own family cannot draw.
+    pub only_by_map: bool,
     pub deforms: bool,
     pub load: Duration,
 }
@@ -214,8 +216,9 @@ impl MapMaker {
         let mut placed = Vec::new();
         let cull = self.casting.as_ref().map_or(Cull::BackOfClosed, |casting| casting.pass.cull);
         let of_views = lights.light_of_view.iter().zip(&lights.views);
-        let casters: Vec<Vec<Batch>> =
-            of_views.map(|of| world.items.casters(of, self.all_casters, cull, &mut placed)).collect();
+        let casters: Vec<Vec<Batch>> = of_views
+            .map(|of| world.items.casters(of, self.all_casters, self.only_by_map, cull, &mut placed))
+            .collect();
         lights.warnings.extend(open_casters(&self.mesh_names, &self.settings, &casters));
         if let Some(Casting { pass, pipelines, .. }) = &self.casting {
             let regrown = self.make_room(set, lights.views.len() as u32)?;

@@ -11,7 +11,7 @@ use umbrage::core::layout::GpuView;
 
 /// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
 pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// The picture's depth.
+/// The picture's depth, where nothing is counted over it.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// The picture.
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -138,6 +138,7 @@ pub enum MeshTarget {
 /// Mesh pipelines by variant, made when first asked for.
 #[derive(Debug)]
 pub struct MeshPipelines {
+    depth: wgpu::TextureFormat,
     shader: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     made: HashMap<(MeshTarget, Variant), wgpu::RenderPipeline>,
@@ -155,8 +156,13 @@ const FULL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
 };
 
 impl MeshPipelines {
-    /// Compiles the shader.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, needs: &ShaderNeeds) -> Self {
+    /// Compiles the shader, for targets with that depth.
+    pub fn new(
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        needs: &ShaderNeeds,
+        depth: wgpu::TextureFormat,
+    ) -> Self {
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("mesh"),
             source: wgpu::ShaderSource::Wgsl(shaders::mesh(needs).into()),
@@ -166,7 +172,7 @@ impl MeshPipelines {
             bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.material)],
             immediate_size: 0,
         });
-        Self { shader, layout, made: HashMap::new() }
+        Self { depth, shader, layout, made: HashMap::new() }
     }
 
     /// Makes the pipelines of these variants, so that a frame finds them.
@@ -233,7 +239,7 @@ impl MeshPipelines {
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
+                format: self.depth,
                 depth_write_enabled: Some(!variant.blend),
                 depth_compare: Some(umbrage::caster::depth_compare()),
                 stencil: Default::default(),
@@ -262,6 +268,7 @@ pub fn screen_pipeline(
     layouts: &Layouts,
     needs: &ShaderNeeds,
     view: View,
+    depth: wgpu::TextureFormat,
 ) -> wgpu::RenderPipeline {
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("screen"),
@@ -295,7 +302,7 @@ pub fn screen_pipeline(
         // The triangle lies where nothing is, so only pixels that show a surface run the shader; the map itself
         // covers all.
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH_FORMAT,
+            format: depth,
             depth_write_enabled: Some(false),
             depth_compare: Some(match view {
                 View::Depth | View::Channels | View::DensityLight => wgpu::CompareFunction::Always,

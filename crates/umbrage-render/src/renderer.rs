@@ -3,7 +3,7 @@
 use crate::bindings::FrameBindings;
 use crate::draw_list::{Batch, Items, Work};
 use crate::frame::Ages;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, caster_cutoff};
 use crate::gpu::Gpu;
 use crate::layout::{GpuFrame, MAX_LIGHTS};
 use crate::lights::{Lights, eye_of};
@@ -12,11 +12,12 @@ use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::options::{RenderOptions, View};
 use crate::peeled::{Peeled, caster_passes};
-use crate::pipelines::{Layouts, MeshPipelines, MeshTarget, screen_pipeline};
+use crate::pipelines::{DEPTH_FORMAT, Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
-use crate::targets::Targets;
+use crate::targets::{TargetNeeds, Targets};
 use crate::textures::Textures;
 use crate::threaded::{MapSchedule, MapThread, locked};
+use crate::volumes::Volumes;
 use crate::{RenderError, exposure, own_wgsl};
 use glam::{Mat4, Vec3};
 use std::ops::Range;
@@ -25,10 +26,10 @@ use std::time::{Duration, Instant};
 use umbrage::caster::NO_DEFORM;
 use umbrage::core::fit::ShadowView;
 use umbrage::core::plan::{Draws, plan};
-use umbrage::core::technique::{Combination, Storage};
+use umbrage::core::technique::{Combination, DEFAULT, Method, NO_SHADOW, Settings, Storage};
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind, LightShape};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentPipelines, choose_format};
-use umbrage_scene::{Image, Instance, Reflectance, Scene, SceneLight};
+use umbrage_scene::{Image, Instance, Mesh, Reflectance, Scene, SceneLight};
 
 /// A scene made ready for one GPU.
 #[derive(Debug)]
@@ -40,6 +41,7 @@ pub struct Renderer<'a> {
     pub(crate) materials: Arc<Vec<MaterialEntry>>,
     pub(crate) material_of_mesh: Arc<Vec<usize>>,
     pub(crate) maker: Arc<MapMaker>,
+    pub(crate) volumes: Option<Volumes>,
     /// One set of maps, or two that a thread and the frames exchange.
     pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
     pub(crate) schedule: MapSchedule,
@@ -87,15 +89,20 @@ impl<'a> Renderer<'a> {
         check_samples(gpu, options.samples)?;
         let emits = scene.meshes.iter().any(|mesh| scene.materials[mesh.material].emissive != Vec3::ZERO);
         let lit_at_once = matches!(options.view, View::Final | View::Light) && (options.samples > 1 || emits);
-        let targets = Targets::new(&gpu.device, &options, !lit_at_once)?;
+        let on_screen = matches!(options.settings.method, Method::Volume(_));
+        let depth = if on_screen { umbrage::volume::choose_count_format(&gpu.device) } else { DEPTH_FORMAT };
+        let target_needs = TargetNeeds { gbuffer: on_screen || !lit_at_once, lit_at_once, depth };
+        let targets = Targets::new(&gpu.device, &options, &target_needs)?;
 
         check_given(scene, &options)?;
         options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
         options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
-        let format = settled_format(gpu, &options)?;
-        let most_views = most_views(scene, &options);
-        let color_maps = options.settings.combination().is_some() && format.storage.is_color();
+        let by_map = by_map(scene, &options);
+        let map_settings = map_settings(&options.settings, &by_map)?;
+        let format = settled_format(gpu, &options, &map_settings)?;
+        let most_views = most_views(scene, &map_settings);
+        let color_maps = map_settings.combination().is_some() && format.storage.is_color();
         let layouts = Layouts::new(&gpu.device, color_maps, most_views);
         let geometry = Arc::new(Geometry::new(&gpu.device, scene));
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
@@ -109,7 +116,7 @@ impl<'a> Renderer<'a> {
             &caster_layout,
         );
         let world = World {
-            items: Items::new(scene, &geometry, &materials, options.deform_reach_m),
+            items: Items::new(scene, &geometry, &materials, options.deform_reach_m, &by_map),
             lights: scene.lights.clone(),
             camera: *camera,
             time_s: options.time_s,
@@ -119,6 +126,7 @@ impl<'a> Renderer<'a> {
         let maker = make_maker(
             gpu,
             &options,
+            map_settings,
             format,
             &caster_layout,
             exposure,
@@ -127,13 +135,24 @@ impl<'a> Renderer<'a> {
         let mut set = MapSet::new(&gpu.device, most_views);
         maker.refresh(&mut set, &world)?;
 
-        let needs = shader_needs(scene, &options, maker.format.storage, &set.lights);
-        let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs);
-        let screen = (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view));
+        let volumes = Volumes::new(
+            gpu,
+            scene,
+            &options.settings,
+            &by_map,
+            depth,
+            options.size,
+            set.lights.lights.len(),
+        );
+        let needs = shader_needs(scene, &options, &maker.settings, maker.format.storage, &set.lights);
+        let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs, depth);
+        let screen =
+            (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view, depth));
         let slide_images: Vec<&Image> = set.lights.slides.iter().map(|i| &scene.images[*i]).collect();
         let gbuffer_group = gbuffer_group(gpu, &layouts, &targets);
-        let bindings = FrameBindings::new(gpu, layouts, &options, &slide_images);
-        let mut lasting = Vec::new();
+        let v = volumes.as_ref().map(|volumes| volumes.v().array().clone());
+        let bindings = FrameBindings::new(gpu, layouts, &options, &slide_images, v);
+        let mut lasting = fallback_warnings(scene, &options, &by_map);
         if options.samples > 1 && !lit_at_once {
             let id = options.view.id();
             lasting
@@ -147,6 +166,7 @@ impl<'a> Renderer<'a> {
             materials: Arc::clone(&maker.materials),
             material_of_mesh: Arc::clone(&maker.material_of_mesh),
             maker: Arc::new(maker),
+            volumes,
             sets: vec![Arc::new(Mutex::new(set))],
             schedule: MapSchedule::default(),
             thread: None,
@@ -193,8 +213,16 @@ impl<'a> Renderer<'a> {
         self.blended = world.items.blended(&frustum, eye.position, &mut instances);
         self.instances.write(&gpu.device, &gpu.queue, bytemuck::cast_slice(&instances));
         let forward = MeshTarget::Forward { samples: self.options.samples };
-        let solid_target = if self.screen.is_some() { MeshTarget::Gbuffer } else { forward };
-        self.mesh_pipelines.prepare(&gpu.device, solid_target, self.solid.iter().map(|b| b.variant));
+        if self.targets.gbuffer.is_some() {
+            self.mesh_pipelines.prepare(
+                &gpu.device,
+                MeshTarget::Gbuffer,
+                self.solid.iter().map(|b| b.variant),
+            );
+        }
+        if self.screen.is_none() {
+            self.mesh_pipelines.prepare(&gpu.device, forward, self.solid.iter().map(|b| b.variant));
+        }
         if matches!(self.options.view, View::Final | View::Light) {
             self.mesh_pipelines.prepare(&gpu.device, forward, self.blended.iter().map(|b| b.variant));
         }
@@ -211,6 +239,10 @@ impl<'a> Renderer<'a> {
         self.views.clone_from(&set.lights.views);
         self.views_of_light.clone_from(&set.lights.views_of_light);
         self.warnings = set.lights.warnings.iter().chain(&self.lasting).cloned().collect();
+        if let Some(volumes) = &mut self.volumes {
+            let (size, all) = (self.options.size, self.options.all_casters);
+            self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
+        }
         self.told = Some(now);
         Ok(())
     }
@@ -221,7 +253,8 @@ impl<'a> Renderer<'a> {
         let peeled = self.maker.casting.as_ref().and_then(|casting| casting.peeled.as_ref());
         let sets: u64 = self.sets.iter().map(|set| locked(set).memory_bytes()).sum();
         let shadowed = !self.views.is_empty();
-        sets + peeled.filter(|_| shadowed).map_or(0, |peeled| peeled.peel.memory_bytes())
+        let volumes = self.volumes.as_ref().map_or(0, Volumes::memory_bytes);
+        volumes + sets + peeled.filter(|_| shadowed).map_or(0, |peeled| peeled.peel.memory_bytes())
     }
 
     /// Memory of each light's maps, bytes; 0 for lights without. Twice as much while a thread draws them.
@@ -257,20 +290,70 @@ impl<'a> Renderer<'a> {
     }
 }
 
+/// For each mesh: can only a map draw its shadow? Families without maps know no holes, and nothing of what a function moves.
+fn by_map(scene: &Scene, options: &RenderOptions) -> Vec<bool> {
+    let is_family_of_its_own = options.settings.fallback().is_some();
+    let has_holes = |mesh: &Mesh| caster_cutoff(&scene.materials[mesh.material]).is_some();
+    let is_by_map = |mesh: &Mesh| is_family_of_its_own && (options.deform.is_some() || has_holes(mesh));
+    scene.meshes.iter().map(is_by_map).collect()
+}
+
+/// What maps are drawn with: the technique itself, or what takes over for casters that it cannot draw; nothing where there are none.
+fn map_settings(settings: &Settings, by_map: &[bool]) -> Result<Settings, RenderError> {
+    match settings.fallback() {
+        None => Ok(settings.clone()),
+        Some(fallback) if by_map.contains(&true) => Ok(fallback),
+        Some(_) => Settings::new(NO_SHADOW, []).map_err(|e| RenderError::View(e.to_string())),
+    }
+}
+
+/// Which casters a map draws though the technique is none.
+fn fallback_warnings(scene: &Scene, options: &RenderOptions, by_map: &[bool]) -> Vec<String> {
+    const NAMED: usize = 8;
+    let names: Vec<String> = scene
+        .meshes
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| by_map[*index])
+        .map(
+            |(index, mesh)| {
+                if mesh.name.is_empty() { format!("mesh {index}") } else { format!("`{}`", mesh.name) }
+            },
+        )
+        .collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let (id, family) = (options.settings.technique.id, options.settings.method.family().id());
+    let why = if options.deform.is_some() {
+        "a function moves their vertices"
+    } else {
+        "textures cut holes into them"
+    };
+    let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
+    let named = names[..names.len().min(NAMED)].join(", ");
+    vec![format!(
+        "`{id}`: a {family} cannot be made of {named}{more}, because {why}; their shadows come from a `{DEFAULT}` map (set its map_size)"
+    )]
+}
+
 /// What draws the maps.
+#[allow(clippy::too_many_arguments, reason = "a maker is made of all that it needs, and it has one caller")]
 fn make_maker(
     gpu: &Gpu,
     options: &RenderOptions,
+    settings: Settings,
     format: ChosenFormat,
     caster_layout: &wgpu::BindGroupLayout,
     exposure: f32,
     (geometry, materials, scene): (Arc<Geometry>, Arc<Vec<MaterialEntry>>, &Scene),
 ) -> Result<MapMaker, RenderError> {
-    let casting = make_casting(gpu, options, &format, caster_layout)?;
+    let casting = make_casting(gpu, options, &settings, &format, caster_layout)?;
     Ok(MapMaker {
         device: gpu.device.clone(),
         queue: gpu.queue.clone(),
-        settings: options.settings.clone(),
+        only_by_map: options.settings.fallback().is_some(),
+        settings,
         format,
         casting,
         geometry,
@@ -289,15 +372,16 @@ fn make_maker(
 fn make_casting(
     gpu: &Gpu,
     options: &RenderOptions,
+    settings: &Settings,
     format: &ChosenFormat,
     caster_layout: &wgpu::BindGroupLayout,
 ) -> Result<Option<Casting>, RenderError> {
-    let (Some(pass), peel_pass) = caster_passes(&options.settings) else { return Ok(None) };
+    let (Some(pass), peel_pass) = caster_passes(settings) else { return Ok(None) };
     let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
     let pipelines = CasterPipelines::new(&gpu.device, format, &pass, caster_layout, deform);
-    let size_texel = options.settings.map_size_texel();
+    let size_texel = settings.map_size_texel();
     let peel = |pass| Peeled::new(&gpu.device, pass, size_texel, caster_layout, deform);
-    let mut tinting = plan(&options.settings).into_iter().filter(|pass| pass.draws == Draws::Translucent);
+    let mut tinting = plan(settings).into_iter().filter(|pass| pass.draws == Draws::Translucent);
     let translucent = match (tinting.next(), tinting.next()) {
         (Some(colors), Some(nearest)) => {
             let groups = [&pipelines.view_layout, caster_layout];
@@ -310,10 +394,14 @@ fn make_casting(
 }
 
 /// The format of the maps, when it goes with all else that was asked for.
-fn settled_format(gpu: &Gpu, options: &RenderOptions) -> Result<ChosenFormat, RenderError> {
-    let storage = options.settings.combination().map_or(Storage::Auto, |c| c.storage);
+fn settled_format(
+    gpu: &Gpu,
+    options: &RenderOptions,
+    settings: &Settings,
+) -> Result<ChosenFormat, RenderError> {
+    let storage = settings.combination().map_or(Storage::Auto, |c| c.storage);
     let format = choose_format(storage, |format| gpu.usages_of(format))?;
-    let settled = options.settings.combination().map(|c| Combination { storage: format.storage, ..c });
+    let settled = settings.combination().map(|c| Combination { storage: format.storage, ..c });
     if let Some(reason) = settled.and_then(|combination| combination.objection()) {
         return Err(RenderError::View(format!(
             "this adapter's best storage for maps is {}, and that does not go with the rest: {reason}",
@@ -330,9 +418,8 @@ fn settled_format(gpu: &Gpu, options: &RenderOptions) -> Result<ChosenFormat, Re
 }
 
 /// How many views the lights of a scene may have.
-fn most_views(scene: &Scene, options: &RenderOptions) -> usize {
-    let places =
-        if options.settings.combination().is_some() { options.settings.places() as usize } else { 0 };
+fn most_views(scene: &Scene, settings: &Settings) -> usize {
+    let places = if settings.combination().is_some() { settings.places() as usize } else { 0 };
     let of_light = |light: &Light| {
         let places = if light.shape == LightShape::Point { places.min(1) } else { places };
         places * if light.kind == LightKind::Point { 6 } else { 1 }
@@ -341,20 +428,27 @@ fn most_views(scene: &Scene, options: &RenderOptions) -> usize {
 }
 
 /// What the shaders of a scene must be able to do, and no more.
-fn shader_needs(scene: &Scene, options: &RenderOptions, storage: Storage, lights: &Lights) -> ShaderNeeds {
+fn shader_needs(
+    scene: &Scene,
+    options: &RenderOptions,
+    settings: &Settings,
+    storage: Storage,
+    lights: &Lights,
+) -> ShaderNeeds {
     let used = || scene.meshes.iter().map(|mesh| &scene.materials[mesh.material].reflectance);
     let is_blinn = |r: &Reflectance| options.all_blinn || matches!(r, Reflectance::Blinn { .. });
     ShaderNeeds {
         // `auto` is read as what it was settled on.
-        combination: options.settings.combination().map(|c| Combination { storage, ..c }),
+        combination: settings.combination().map(|c| Combination { storage, ..c }),
         given: options.given.is_some(),
+        screen: matches!(options.settings.method, Method::Volume(_)),
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
         placed: scene.lights.iter().any(|l| l.light.kind != LightKind::Directional),
         slide: !lights.slides.is_empty(),
         lights: lights.lights.len(),
         point: scene.lights.iter().any(|l| l.light.kind == LightKind::Point),
-        views: most_views(scene, options),
+        views: most_views(scene, settings),
         places: lights.lights.iter().any(|l| l.places > 1),
         density: options.view.is_density(),
         deform: options.deform.clone(),
@@ -409,13 +503,13 @@ fn automatic_exposure(scene: &Scene) -> f32 {
 
 /// Group 1 of the screen pipelines, where there is a G-buffer.
 fn gbuffer_group(gpu: &Gpu, layouts: &Layouts, targets: &Targets) -> Option<wgpu::BindGroup> {
-    let gbuffer = targets.gbuffer.as_ref()?;
+    let (gbuffer, depth) = (targets.gbuffer.as_ref()?, targets.depth_only.as_ref()?);
     Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("gbuffer"),
         layout: &layouts.gbuffer,
         entries: &[
             wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(gbuffer) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&targets.depth) },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
         ],
     }))
 }
@@ -438,7 +532,7 @@ fn check_given(scene: &Scene, options: &RenderOptions) -> Result<(), RenderError
     let lights = scene.lights.len().min(MAX_LIGHTS);
     let pixels = options.size.element_product() as usize;
     let fits = given.of_light.len() == lights && given.of_light.iter().all(|v| v.len() == pixels);
-    if fits && options.settings.combination().is_none() {
+    if fits && options.settings.method == Method::None {
         return Ok(());
     }
     Err(RenderError::View(if fits {

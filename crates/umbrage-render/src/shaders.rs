@@ -24,6 +24,8 @@ pub struct ShaderNeeds {
     pub combination: Option<Combination>,
     /// Is V given for each pixel?
     pub given: bool,
+    /// Is a part of V found on the screen before surfaces are lit?
+    pub screen: bool,
     /// Does any surface answer by metallic-roughness?
     pub metallic_roughness: bool,
     /// Does any surface answer by Lambert and Blinn?
@@ -91,8 +93,22 @@ fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, toward
 }
 ";
 
+/// The share of a light that is seen, by what was found on the screen, and by maps for what that leaves out.
+fn on_screen(needs: &ShaderNeeds) -> String {
+    let others = match &needs.combination {
+        Some(combination) => mapped(needs, combination, "mapped_share"),
+        None => ALL_VISIBLE.replace("visible_share", "mapped_share"),
+    };
+    format!(
+        "{others}fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
+    return Seen(textureLoad(given_v, at_pixel, index, 0).r) * mapped_share(index, light, p_world, normal, towards);
+}}
+"
+    )
+}
+
 /// The share of a light that is seen, by its maps.
-fn mapped(needs: &ShaderNeeds, combination: &Combination) -> String {
+fn mapped(needs: &ShaderNeeds, combination: &Combination, name: &str) -> String {
     let sampler = if combination.compares_in_hardware() { "map_compare" } else { "map_point" };
     let filter = combination.filter_function();
     let moved = if combination.bias == Bias::Normal {
@@ -138,7 +154,7 @@ fn seen_in(light: Light, view: UmbrageView, p_world: vec3f, normal: vec3f, towar
         format!("    let first = u32(max(light.view, 0));\n    let seen = {one};\n")
     };
     format!(
-        "{seen_in}fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
+        "{seen_in}fn {name}(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
 {body}    return select(seen, Seen(1.0), light.view < 0);
 }}
 "
@@ -173,7 +189,8 @@ fn prelude(needs: &ShaderNeeds) -> String {
     let library = library.unwrap_or_else(|e| format!("// {e}\n"));
     let visibility = match &needs.combination {
         _ if needs.given => GIVEN.to_owned(),
-        Some(combination) => mapped(needs, combination),
+        _ if needs.screen => on_screen(needs),
+        Some(combination) => mapped(needs, combination, "visible_share"),
         None => ALL_VISIBLE.to_owned(),
     };
     let flags = [
@@ -216,6 +233,7 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
     let needs = |combination, lights: usize, metallic_roughness, blinn| ShaderNeeds {
         combination,
         given: combination.is_none() && lights == 1,
+        screen: lights > WRITTEN_OUT,
         metallic_roughness,
         blinn,
         placed: lights != 1,

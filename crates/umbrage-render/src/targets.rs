@@ -1,6 +1,6 @@
 //! Textures that a frame is drawn to.
 
-use crate::pipelines::{COLOR, DEPTH_FORMAT, GBUFFER, format_of};
+use crate::pipelines::{COLOR, GBUFFER, format_of};
 use crate::{RenderError, RenderOptions};
 
 /// The targets of one picture.
@@ -10,9 +10,13 @@ pub struct Targets {
     pub output: wgpu::Texture,
     /// The same, to draw to.
     pub output_view: wgpu::TextureView,
-    /// Depth of the picture.
+    /// Depth of the surfaces, with the stencil where there is one.
     pub depth: wgpu::TextureView,
-    /// Surfaces; `None` when everything is lit at once.
+    /// The same without, to be read; only where there is a G-buffer.
+    pub depth_only: Option<wgpu::TextureView>,
+    /// Depth of what is lit at once, where that is drawn after the G-buffer.
+    pub lit_depth: Option<wgpu::TextureView>,
+    /// Surfaces; `None` when everything is lit at once and nobody asks for them.
     pub gbuffer: Option<wgpu::TextureView>,
     /// Surfaces and depth to be read back, where there is a G-buffer.
     pub surfaces: Option<[wgpu::Texture; 2]>,
@@ -20,12 +24,32 @@ pub struct Targets {
     pub multisampled: Option<wgpu::TextureView>,
 }
 
+/// Which targets there are.
+#[derive(Clone, Copy, Debug)]
+pub struct TargetNeeds {
+    /// Are surfaces drawn into a G-buffer?
+    pub gbuffer: bool,
+    /// Are surfaces lit as they are drawn, into the picture itself?
+    pub lit_at_once: bool,
+    /// Format of depth.
+    pub depth: wgpu::TextureFormat,
+}
+
 impl Targets {
+    /// The depth of what is lit as it is drawn.
+    pub fn forward_depth(&self) -> &wgpu::TextureView {
+        self.lit_depth.as_ref().unwrap_or(&self.depth)
+    }
+
     /// Makes them.
     ///
     /// # Errors
     /// [`RenderError::Size`] when the device's textures are smaller.
-    pub fn new(device: &wgpu::Device, options: &RenderOptions, deferred: bool) -> Result<Self, RenderError> {
+    pub fn new(
+        device: &wgpu::Device,
+        options: &RenderOptions,
+        needs: &TargetNeeds,
+    ) -> Result<Self, RenderError> {
         let (width, height) = (options.size.x, options.size.y);
         let limit = device.limits().max_texture_dimension_2d;
         if width == 0 || height == 0 || width > limit || height > limit {
@@ -45,16 +69,27 @@ impl Targets {
         };
         use wgpu::TextureUsages as Usage;
         let drawn = Usage::RENDER_ATTACHMENT;
-        let samples = if deferred { 1 } else { options.samples };
+        let deferred = needs.gbuffer;
+        let samples = if needs.lit_at_once { options.samples } else { 1 };
         let output =
             make("output", format_of(options.view, options.colors_light()), 1, drawn | Usage::COPY_SRC);
         let read = drawn | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
-        let depth = make("depth", DEPTH_FORMAT, samples, if deferred { read } else { drawn });
+        let of_surfaces = if deferred { 1 } else { samples };
+        let depth = make("depth", needs.depth, of_surfaces, if deferred { read } else { drawn });
+        let lit_depth =
+            (deferred && needs.lit_at_once).then(|| make("lit depth", needs.depth, samples, drawn));
         let gbuffer = deferred.then(|| make("gbuffer", GBUFFER, 1, read));
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         Ok(Self {
             output_view: output.create_view(&Default::default()),
             depth: view(&depth),
+            depth_only: deferred.then(|| {
+                depth.create_view(&wgpu::TextureViewDescriptor {
+                    aspect: wgpu::TextureAspect::DepthOnly,
+                    ..Default::default()
+                })
+            }),
+            lit_depth: lit_depth.as_ref().map(view),
             gbuffer: gbuffer.as_ref().map(view),
             multisampled: (samples > 1).then(|| view(&make("samples", COLOR, samples, drawn))),
             surfaces: gbuffer.map(|gbuffer| [gbuffer, depth]),

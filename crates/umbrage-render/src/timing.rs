@@ -82,6 +82,31 @@ impl Queries {
         })
     }
 
+    /// What goes into the descriptor of a compute pass.
+    pub fn compute_stamps(&self, pass: u32) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        self.stamps.as_ref().map(|query_set| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(2 * pass),
+            end_of_pass_write_index: Some(2 * pass + 1),
+        })
+    }
+
+    /// Counts the work of `find`, which has neither vertices nor fragments: a query that was never begun has no end.
+    pub fn count_compute(
+        &self,
+        recorded: &mut wgpu::ComputePass<'_>,
+        pass: u32,
+        find: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
+        if let Some(set) = &self.statistics {
+            recorded.begin_pipeline_statistics_query(set, pass);
+        }
+        find(recorded);
+        if self.statistics.is_some() {
+            recorded.end_pipeline_statistics_query();
+        }
+    }
+
     /// Counts the work of `draw`.
     pub fn count(
         &self,

@@ -51,7 +51,7 @@ struct Light {
 @group(0) @binding(4) var map_compare: sampler_comparison;
 @group(0) @binding(5) var slides: texture_2d_array<f32>;
 @group(0) @binding(6) var slide_sampler: sampler;
-// V that was found elsewhere, a layer a light; read only by shaders that are made for it.
+// V that was found elsewhere or on the screen, a layer a light; read only by shaders that are made for it.
 @group(0) @binding(7) var given_v: texture_2d_array<f32>;
 @group(0) @binding(8) var map_point: sampler;
 // The nearest translucent casters, and what all of them let through; read only where light is coloured.

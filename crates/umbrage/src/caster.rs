@@ -262,7 +262,7 @@ impl CasterPipelines {
         let (closed, mirrored) = match pass.cull {
             Cull::BackOfClosed => (Some(wgpu::Face::Back), Some(wgpu::Face::Front)),
             Cull::FrontOfClosed => (Some(wgpu::Face::Front), Some(wgpu::Face::Back)),
-            Cull::Nothing | Cull::ByMaterial => (None, None),
+            Cull::Front | Cull::Back | Cull::Nothing | Cull::ByMaterial => (None, None),
         };
         Self {
             open: pipeline("umbrage open caster", solid, false, None),

@@ -21,7 +21,7 @@ pub enum Family {
 
 impl Family {
     /// All that have choices.
-    pub const WITH_CHOICES: [Self; 1] = [Self::Map];
+    pub const WITH_CHOICES: [Self; 2] = [Self::Map, Self::Volume];
 
     /// One word.
     pub fn id(self) -> &'static str {

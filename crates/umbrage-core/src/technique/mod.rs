@@ -15,6 +15,7 @@ pub use choices::{Bias, Choice, Filter, Projection, Steps, Storage, Translucent}
 pub use combination::Combination;
 pub use method::{Family, Method, Table};
 pub use settings::{SettingError, Settings};
+use volume::Volume;
 
 /// Where an idea was published.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +80,9 @@ pub struct Technique {
 
 /// The technique that is used when none is named.
 pub const DEFAULT: &str = "linear";
+
+/// The technique without shadows.
+pub const NO_SHADOW: &str = "unshadowed";
 
 const STAMMINGER: Source = Source { paper: "Stamminger and Drettakis, Perspective Shadow Maps", year: 2002 };
 const WIMMER: Source =
@@ -192,6 +196,20 @@ pub const TECHNIQUES: &[Technique] = &[
         source: Some(choices::WANG_MOLNAR),
         method: Method::Map(Combination { bias: Bias::SecondDepth, ..LINEAR }),
     },
+    Technique {
+        id: "volume",
+        label: "Shadow volume",
+        summary: "the darkened space as polygons that the stencil counts: exact to the pixel, no map, no bias; pays by the pixels it covers",
+        source: Some(volume::EVERITT_KILGARD),
+        method: Method::Volume(Volume::DEFAULT),
+    },
+    Technique {
+        id: "volume-soft",
+        label: "Soft shadow volume",
+        summary: "the same, blurred on the screen across like depths: soft edges of one width, not physical",
+        source: Some(BJORKE),
+        method: Method::Volume(Volume { soften: volume::Soften::Blur, ..Volume::DEFAULT }),
+    },
 ];
 
 /// The technique of that name.
@@ -222,7 +240,7 @@ mod tests {
     fn every_parameter_is_described_and_its_default_is_in_range() {
         let mut seen = 0;
         let maps = Combination::all().map(Method::Map);
-        let others = volume::Volume::all().map(Method::Volume).chain([Method::Mask(mask::Mask::DEFAULT)]);
+        let others = Volume::all().map(Method::Volume).chain([Method::Mask(mask::Mask::DEFAULT)]);
         for method in maps.chain(others) {
             for param in method.params() {
                 let reach_texel = method.combination().map_or(0.0, |c| c.reach_texel(5.0));

@@ -5,7 +5,7 @@ use super::params::{EXTRUDE, FALLBACK_MAP_SIZE, INSET, LIKE_DEPTH, SOFT_M, SOFT_
 use super::{Method, Param, Source, Table};
 
 const HEIDMANN: Source = Source { paper: "Heidmann, Real Shadows Real Time, Iris Universe 18", year: 1991 };
-const EVERITT_KILGARD: Source = Source {
+pub(super) const EVERITT_KILGARD: Source = Source {
     paper: "Everitt and Kilgard, Practical and Robust Stenciled Shadow Volumes for Hardware-Accelerated Rendering",
     year: 2002,
 };

@@ -32,6 +32,15 @@ pub enum Faces {
 }
 
 impl Faces {
+    /// The name of the pass that counts them, as in the plan.
+    pub fn pass_name(self) -> &'static str {
+        match self {
+            Self::Both => "back+front",
+            Self::Front => "front",
+            Self::Back => "back",
+        }
+    }
+
     /// The passes of a way to count, in order.
     pub fn passes(stencil: Stencil) -> &'static [Self] {
         match stencil {
@@ -62,18 +71,26 @@ impl Counted {
     }
 }
 
-/// Records the compute pass that writes the faces of a light's volumes. They hold until light or casters change.
+/// Records a compute pass in which `find` calls [`find_silhouettes`] for one light or several.
 pub fn record_silhouettes(
     encoder: &mut wgpu::CommandEncoder,
-    pipelines: &VolumePipelines,
-    light: &VolumeLight,
-    meshes: &[Option<VolumeMesh>],
     timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>,
+    find: impl FnOnce(&mut wgpu::ComputePass<'_>),
 ) {
     let mut recorded = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
         label: Some("silhouettes"),
         timestamp_writes: timestamps,
     });
+    find(&mut recorded);
+}
+
+/// Writes the faces of a light's volumes. They hold until light or casters change.
+pub fn find_silhouettes(
+    recorded: &mut wgpu::ComputePass<'_>,
+    pipelines: &VolumePipelines,
+    light: &VolumeLight,
+    meshes: &[Option<VolumeMesh>],
+) {
     let Some(silhouettes) = &pipelines.silhouettes else { return };
     recorded.set_pipeline(silhouettes);
     for (number, caster) in light.casters().iter().enumerate() {
@@ -91,22 +108,17 @@ pub fn record_silhouettes(
     }
 }
 
-/// Records one of the passes that count a light's volumes. `draw` says which casters, by their numbers, and how each is counted;
-/// `depth_stencil` keeps its depth. `clears` is true for the first pass of a light. `scissor` is left, top, width, height, pixels.
-#[allow(clippy::too_many_arguments, reason = "a pass has a target, a state and what is drawn")]
+/// Records a pass in which `draw` calls [`count_volumes`]. `depth_stencil` keeps its depth; its stencil is `cleared` before the
+/// first pass of a light. `scissor` is left, top, width, height, pixels.
 pub fn record_counts(
     encoder: &mut wgpu::CommandEncoder,
-    pipelines: &VolumePipelines,
-    light: &VolumeLight,
-    meshes: &[Option<VolumeMesh>],
     depth_stencil: &wgpu::TextureView,
-    faces: Faces,
-    clears: bool,
+    cleared: bool,
     scissor: [u32; 4],
-    draw: &[(usize, Counted)],
     timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) {
-    let load = if clears { wgpu::LoadOp::Clear(0) } else { wgpu::LoadOp::Load };
+    let load = if cleared { wgpu::LoadOp::Clear(0) } else { wgpu::LoadOp::Load };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("volumes"),
         color_attachments: &[],
@@ -121,9 +133,19 @@ pub fn record_counts(
     });
     let [x, y, width, height] = scissor;
     recorded.set_scissor_rect(x, y, width, height);
-    draw_volumes(&mut recorded, light, meshes, draw, |counted, winding| {
-        pipelines.counts(counted, faces, winding)
-    });
+    draw(&mut recorded);
+}
+
+/// Counts a light's volumes: `draw` says which casters, by their numbers, and how each is counted.
+pub fn count_volumes(
+    recorded: &mut wgpu::RenderPass<'_>,
+    pipelines: &VolumePipelines,
+    light: &VolumeLight,
+    meshes: &[Option<VolumeMesh>],
+    faces: Faces,
+    draw: &[(usize, Counted)],
+) {
+    draw_volumes(recorded, light, meshes, draw, |counted, winding| pipelines.counts(counted, faces, winding));
 }
 
 /// Draws volumes with pipelines of one's own: `pipeline` is asked for each draw.
@@ -159,16 +181,17 @@ pub fn draw_volumes<'a>(
     }
 }
 
-/// Records the pass that writes V of a light: 1 where the stencil counted nothing, 0 elsewhere.
+/// Records the pass that writes V of a light, in which `draw` calls [`write_visibility`]: 1 where the stencil counted nothing, 0
+/// elsewhere.
 pub fn record_visibility(
     encoder: &mut wgpu::CommandEncoder,
-    pipelines: &VolumePipelines,
     depth_stencil: &wgpu::TextureView,
     v: &wgpu::TextureView,
     timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
+    draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) {
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("visibility"),
+        label: Some("mask"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: v,
             depth_slice: None,
@@ -187,6 +210,11 @@ pub fn record_visibility(
         occlusion_query_set: None,
         multiview_mask: None,
     });
+    draw(&mut recorded);
+}
+
+/// Writes 1 where the stencil counted nothing.
+pub fn write_visibility(recorded: &mut wgpu::RenderPass<'_>, pipelines: &VolumePipelines) {
     recorded.set_pipeline(&pipelines.visibility);
     recorded.set_stencil_reference(0);
     recorded.draw(0..3, 0..1);

@@ -1,0 +1,282 @@
+//! Shadow volumes of a scene's lights: which casters throw them, and what of them has to be found anew.
+
+use crate::draw_list::Work;
+use crate::gpu::Gpu;
+use crate::moving::World;
+use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::timing::Queries;
+use glam::{Mat4, UVec2};
+use umbrage::core::edges::Adjacency;
+use umbrage::core::technique::volume::Volume;
+use umbrage::core::technique::{Method, Settings};
+use umbrage::core::volume as maths;
+use umbrage::core::{DEPTH, Frustum};
+use umbrage::volume::{
+    Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, count_volumes,
+    find_silhouettes, record_counts, record_silhouettes, record_visibility, write_visibility,
+};
+use umbrage_scene::{Mesh, Scene};
+
+/// The volumes of one light.
+#[derive(Debug, Default)]
+struct OfLight {
+    volumes: Option<VolumeLight>,
+    /// Do its faces have to be found?
+    stale: bool,
+    /// Casters whose shadow may be seen, by their numbers.
+    draw: Vec<(usize, Counted)>,
+    scissor: Option<maths::Scissor>,
+}
+
+/// A mesh, and whether any part of it is open.
+#[derive(Debug)]
+struct Shape {
+    mesh: Option<VolumeMesh>,
+    is_open: bool,
+}
+
+/// The volumes of all lights.
+#[derive(Debug)]
+pub(crate) struct Volumes {
+    choices: Volume,
+    inset_m: f32,
+    extrude_m: f32,
+    pipelines: VolumePipelines,
+    meshes: Vec<Option<VolumeMesh>>,
+    /// For each mesh: is any part of it open?
+    open: Vec<bool>,
+    clip_from_world: wgpu::Buffer,
+    lights: Vec<OfLight>,
+    v: ScreenV,
+}
+
+fn shape(device: &wgpu::Device, pipelines: &VolumePipelines, mesh: &Mesh) -> Shape {
+    let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
+    let source = VolumeSource { positions: &mesh.positions, adjacency: &adjacency };
+    Shape { mesh: VolumeMesh::new(device, pipelines, &source), is_open: adjacency.counts.open_parts > 0 }
+}
+
+impl Volumes {
+    /// Uploads the meshes; `None` for other families. `by_map` are those that maps draw.
+    pub fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        by_map: &[bool],
+        format: wgpu::TextureFormat,
+        size: UVec2,
+        lights: usize,
+    ) -> Option<Self> {
+        let Method::Volume(choices) = settings.method else { return None };
+        let device = &gpu.device;
+        let pipelines = VolumePipelines::new(device, choices.silhouette, format, SCREEN_V);
+        let of = |(mesh, by_map): (&Mesh, &bool)| {
+            if *by_map { Shape { mesh: None, is_open: false } } else { shape(device, &pipelines, mesh) }
+        };
+        let shapes: Vec<Shape> = scene.meshes.iter().zip(by_map).map(of).collect();
+        Some(Self {
+            choices,
+            inset_m: settings.value("inset_m").unwrap_or(0.0),
+            extrude_m: settings.value("extrude_m").unwrap_or(0.0),
+            open: shapes.iter().map(|shape| shape.is_open).collect(),
+            meshes: shapes.into_iter().map(|shape| shape.mesh).collect(),
+            pipelines,
+            clip_from_world: device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("volume eye"),
+                size: size_of::<Mat4>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            lights: (0..lights).map(|_| OfLight::default()).collect(),
+            v: ScreenV::new(device, size, lights),
+        })
+    }
+
+    /// V of all lights.
+    pub fn v(&self) -> &ScreenV {
+        &self.v
+    }
+
+    /// Gives a mesh another shape.
+    pub fn reshape(&mut self, device: &wgpu::Device, index: usize, mesh: &Mesh) {
+        if self.meshes[index].is_some() {
+            let made = shape(device, &self.pipelines, mesh);
+            (self.meshes[index], self.open[index]) = (made.mesh, made.is_open);
+        }
+    }
+
+    /// Lists what is drawn of the world from where it is seen. Faces that hold are kept.
+    pub fn tell(
+        &mut self,
+        gpu: &Gpu,
+        world: &World,
+        clip_from_world: Mat4,
+        size: UVec2,
+        all_casters: bool,
+    ) -> Vec<String> {
+        let mut warnings = Vec::new();
+        gpu.queue.write_buffer(&self.clip_from_world, 0, bytemuck::bytes_of(&clip_from_world));
+        let frustum = Frustum::from_clip(clip_from_world, DEPTH);
+        let near_world = maths::near_corners_world(clip_from_world, DEPTH.ndc_near());
+        let scene_world = world.items.whole();
+        for (index, placed) in world.lights.iter().enumerate().take(self.lights.len()) {
+            let light = &placed.light;
+            let light_world = maths::light_point_world(light);
+            let scissor = maths::lit_pixels(light, &scene_world, clip_from_world, size);
+            let mut draw = Vec::new();
+            let mut casters = Vec::new();
+            for placed in world.items.volume_casters(light, all_casters) {
+                if self.meshes[placed.mesh].is_none() {
+                    continue;
+                }
+                let may_be_in = near_world
+                    .is_none_or(|near| maths::eye_may_be_in_shadow(&near, light_world, &placed.bounds_world));
+                let counted = Counted::new(self.choices.counting, may_be_in);
+                let both_sides = maths::light_may_be_inside(light_world, &placed.bounds_world);
+                if maths::shadow_may_be_seen(&frustum, light_world, &placed.bounds_world) {
+                    draw.push((casters.len(), counted));
+                }
+                let is_behind = counted == Counted::Behind;
+                casters.push(VolumeCaster {
+                    mesh: placed.mesh,
+                    version: world.mesh_versions[placed.mesh],
+                    world_from_object: placed.world_from_object,
+                    light_world,
+                    inset_m: self.inset_m,
+                    extrude_m: self.extrude_m,
+                    both_sides,
+                    // What is not closed may be seen from behind, and then its lid is looked through.
+                    near_caps: is_behind || both_sides || self.open[placed.mesh],
+                    far_caps: is_behind,
+                    winding: VolumeCaster::winding_of(&placed.world_from_object),
+                });
+            }
+            let of_light = &mut self.lights[index];
+            (of_light.draw, of_light.scissor) = (draw, scissor);
+            if of_light.volumes.as_ref().is_none_or(|volumes| volumes.casters() != casters) {
+                of_light.volumes = VolumeLight::new(
+                    &gpu.device,
+                    &gpu.queue,
+                    &self.pipelines,
+                    &self.meshes,
+                    casters,
+                    &self.clip_from_world,
+                );
+                of_light.stale = true;
+                if of_light.volumes.is_none() {
+                    warnings.push(format!(
+                        "light {index} throws no shadow: the faces of its volumes do not fit into a buffer of this device; \
+                         use the technique `linear`, or meshes with fewer triangles"
+                    ));
+                }
+            }
+        }
+        warnings
+    }
+
+    /// The passes of the next frame, in their order: names end in the light's number.
+    pub fn pass_names(&self, reuse: bool) -> Vec<String> {
+        let mut names = Vec::new();
+        for (index, light) in self.lights.iter().enumerate() {
+            if self.finds(light, reuse) {
+                names.push(format!("silhouettes {index}"));
+            }
+            for faces in Faces::passes(self.choices.stencil) {
+                names.push(format!("{} {index}", faces.pass_name()));
+            }
+            names.push(format!("mask {index}"));
+        }
+        names
+    }
+
+    fn finds(&self, light: &OfLight, reuse: bool) -> bool {
+        (light.stale || !reuse)
+            && self.choices.silhouette == umbrage::core::technique::volume::Silhouette::Compute
+            && light.volumes.as_ref().is_some_and(|volumes| !volumes.casters().is_empty())
+    }
+
+    /// Records all of them, measured as passes number `first` and on; says what each asks of the GPU.
+    pub fn record(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        depth_stencil: &wgpu::TextureView,
+        size: UVec2,
+        reuse: bool,
+        (queries, first): (&Queries, u32),
+    ) -> Vec<Work> {
+        let mut pass = first;
+        let mut works = Vec::new();
+        for index in 0..self.lights.len() {
+            let finds = self.finds(&self.lights[index], reuse);
+            let stale = std::mem::replace(&mut self.lights[index].stale, false);
+            let light = &self.lights[index];
+            let empty = [0, 0, size.x, size.y];
+            if let (true, Some(volumes)) = (finds, &light.volumes) {
+                if !stale {
+                    volumes.clear_counts(&gpu.queue);
+                }
+                record_silhouettes(encoder, queries.compute_stamps(pass), |recorded| {
+                    queries.count_compute(recorded, pass, |recorded| {
+                        find_silhouettes(recorded, &self.pipelines, volumes, &self.meshes);
+                    });
+                });
+                works.push(Work { draws: volumes.casters().len() as u64, ..Work::default() });
+                pass += 1;
+            }
+            let drawn = if light.scissor.is_some() { light.draw.as_slice() } else { &[] };
+            for (turn, faces) in Faces::passes(self.choices.stencil).iter().enumerate() {
+                let scissor = light.scissor.unwrap_or(empty);
+                record_counts(encoder, depth_stencil, turn == 0, scissor, queries.stamps(pass), |recorded| {
+                    queries.count(recorded, pass, |recorded| {
+                        if let Some(volumes) = &light.volumes {
+                            count_volumes(recorded, &self.pipelines, volumes, &self.meshes, *faces, drawn);
+                        }
+                    });
+                });
+                works.push(self.work(light, drawn));
+                pass += 1;
+            }
+            record_visibility(
+                encoder,
+                depth_stencil,
+                self.v.layer(index),
+                queries.stamps(pass),
+                |recorded| {
+                    queries.count(recorded, pass, |recorded| write_visibility(recorded, &self.pipelines));
+                },
+            );
+            works.push(Work { draws: 1, instances: 1, triangles: 1, vertices: 3 });
+            pass += 1;
+        }
+        works
+    }
+
+    /// What drawing volumes asks of the GPU. What a compute pass finds is not known here: [`crate::Renderer::silhouettes`] reads it back.
+    fn work(&self, light: &OfLight, drawn: &[(usize, Counted)]) -> Work {
+        let Some(volumes) = &light.volumes else { return Work::default() };
+        drawn.iter().fold(Work::default(), |sum, (number, _)| {
+            let caster = &volumes.casters()[*number];
+            let mesh = self.meshes[caster.mesh].as_ref();
+            let triangles = mesh.and_then(|mesh| mesh.split_triangles(caster.both_sides)).unwrap_or(0);
+            Work {
+                draws: sum.draws + 1,
+                instances: sum.instances + 1,
+                triangles: sum.triangles + triangles,
+                ..sum
+            }
+        })
+    }
+
+    /// Memory of meshes, faces and V, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        let meshes: u64 = self.meshes.iter().flatten().map(VolumeMesh::memory_bytes).sum();
+        let lights: u64 = self
+            .lights
+            .iter()
+            .filter_map(|light| light.volumes.as_ref())
+            .map(VolumeLight::memory_bytes)
+            .sum();
+        meshes + lights + self.v.memory_bytes()
+    }
+}
