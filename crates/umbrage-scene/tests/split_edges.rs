@@ -1,5 +1,8 @@
 //! OBJ files with split edges: all records survive, and the plainest extrusion pulls right shadow volumes out of them.
 
+// The lint's exception for tests does not see a test file's helpers.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use common::volume::{End, Random, Soup, far, hidden, open_edges, points_around, winding};
