@@ -211,7 +211,7 @@ impl<'a> Splitter<'a> {
     fn write_records(&mut self) {
         let bytes = self.bytes;
         self.out.extend_from_slice(&bytes[..Records::start(bytes)]);
-        let (mut seen, mut faces, mut inserted) = ([0; 3], 0, false);
+        let (mut seen, mut faces, mut inserted, mut named) = ([0; 3], 0, false, false);
         for record in Records::new(bytes) {
             let (key, rest) = record.parts();
             match key {
@@ -219,7 +219,7 @@ impl<'a> Splitter<'a> {
                 "f" | "fo" if self.outline.records[faces].is_some() => {
                     let face = self.outline.records[faces].unwrap_or_default();
                     if !inserted {
-                        self.insert_vertices(record.number);
+                        self.insert_vertices(record.number, named);
                         inserted = true;
                     }
                     self.write_face(&record, key, rest, face);
@@ -237,13 +237,14 @@ impl<'a> Splitter<'a> {
                 "vt" => seen[1] += 1,
                 "vn" => seen[2] += 1,
                 "f" | "fo" => faces += 1,
+                "g" | "o" => named = true,
                 _ => {}
             }
         }
     }
 
-    /// Those of the file that come after line `number`, then those that are added.
-    fn insert_vertices(&mut self, number: usize) {
+    /// Those of the file that come after line `number`, then those that are added. `named`: has a group or an object begun?
+    fn insert_vertices(&mut self, number: usize, named: bool) {
         for record in Records::new(self.bytes).filter(|record| record.number > number) {
             if matches!(record.parts().0, "v" | "vn") {
                 self.out.extend_from_slice(record.raw);
@@ -258,6 +259,11 @@ impl<'a> Splitter<'a> {
         for normal in &self.normals.all {
             // Memory takes all that is written to it.
             let _ = write!(self.out, "vn {} {} {}", normal.x, normal.y, normal.z);
+            self.out.extend_from_slice(self.line_end);
+        }
+        // Faces before any group are in the group `default`; some readers put them into the first that is named.
+        if !named {
+            self.out.extend_from_slice(b"g default");
             self.out.extend_from_slice(self.line_end);
         }
     }
