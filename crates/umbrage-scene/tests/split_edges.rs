@@ -7,6 +7,7 @@ mod common;
 
 use common::volume::{End, Random, Soup, far, hidden, open_edges, points_around, winding};
 use glam::{DVec3, Vec3, Vec4};
+use proptest::prelude::*;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use umbrage_scene::{Adjacency, EdgeCounts, SceneError, SplitObj, load, split_obj};
@@ -387,5 +388,65 @@ fn hostile_files_end_in_time() {
         let split = split_obj(&path, true).unwrap();
         eprintln!("{name}: {:?}, {} bytes to {}", started.elapsed(), text.len(), split.bytes.len());
         assert!(split.bytes.len() < 100 * text.len().max(10_000), "{name}: {} bytes", split.bytes.len());
+    }
+}
+
+/// What files are made of, whole and broken.
+const PIECES: [&str; 24] = [
+    "v 0 0 0",
+    "v 1 0 0.5",
+    "v -0 1 0",
+    "v 1 1 1 0.5",
+    "v 2 1 0 1 0 0.5",
+    "v 0 0 0 \\",
+    "vt 0 1",
+    "vn 0 0 1",
+    "vn x",
+    "f 1 2 3",
+    "f -1 -2 -3",
+    "f 1/1 2/1/1 -1//1",
+    "f 1 2 3 -1 -2 # a#b",
+    "fo 3 2 1",
+    "f 1 1 2",
+    "f",
+    "f 1 2 \\",
+    "l -1 1",
+    "g a \\",
+    "curv 0 1 -1 \\",
+    "#\\",
+    "",
+    "\\",
+    "\u{fffd} s 1",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_mixture_of_records_is_split_or_refused(
+        pieces in prop::collection::vec(0..PIECES.len(), 1..30), end in 0..3usize, last: bool, back_faces: bool,
+    ) {
+        let end = ["\n", "\r\n", "\r"][end];
+        // Mostly something to refer to.
+        let start = ["v 0 0 0", "v 0 1 0", "v 0 0 1"].into_iter();
+        let lines: Vec<&str> = start.chain(pieces.iter().map(|i| PIECES[*i])).collect();
+        let text = lines.join(end) + if last { end } else { "" };
+        let folder = Folder::new("mixture");
+        let path = folder.file("mixture.obj", text.as_bytes());
+        let loads = |path: &Path| load(path.to_str().unwrap()).map(|scene| scene.triangles());
+        match split_obj(&path, back_faces) {
+            Err(error) => {
+                prop_assert!(loads(&path).is_err(), "{}", error);
+                prop_assert!(!error.to_string().contains('\n'));
+            }
+            Ok(split) => {
+                let back = split.counts.back_faces > 0;
+                let written = folder.file("split.obj", &split.bytes);
+                match (loads(&path), loads(&written)) {
+                    (Ok(before), Ok(after)) => prop_assert!(after == before || back && after > before),
+                    (before, after) => prop_assert_eq!(before.is_ok(), after.is_ok()),
+                }
+            }
+        }
     }
 }

@@ -294,12 +294,11 @@ impl<'a> Splitter<'a> {
         let _ = write!(self.out, " {vertex}/{uv}/{normal}");
     }
 
-    /// Ends the last line, if the file does not: also where it promises another by a backslash.
+    /// Ends the last line, if the file does not. A backslash there, which promised one more, gets an empty one.
     fn finish_line(&mut self) {
-        if !matches!(self.out.last(), None | Some(b'\n' | b'\r')) {
-            if self.out.ends_with(b"\\") {
-                self.out.extend_from_slice(self.line_end);
-            }
+        let ended = matches!(self.out.last(), None | Some(b'\n' | b'\r'));
+        let continued = self.out.trim_ascii_end().ends_with(b"\\");
+        for _ in 0..u8::from(!ended) + u8::from(continued) {
             self.out.extend_from_slice(self.line_end);
         }
     }
