@@ -1,8 +1,10 @@
 //! Every command and option. The parser, the help texts, the completions and the man pages are made from these.
 
 mod bench;
+mod split_edges;
 
 pub use bench::{BenchArgs, BenchCommand, ThreadedArgs};
+pub use split_edges::SplitEdgesArgs;
 
 use crate::specs::{self, CameraChoice, CaseRef, LightSpec, Pair, TechniqueSpec};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -45,6 +47,8 @@ pub enum Command {
     Passes(PassesArgs),
     /// Print shader modules, ready to be pasted into your own renderer
     Wgsl(WgslArgs),
+    /// Rewrite an OBJ file so that a vertex shader alone can pull shadow volumes out of it
+    SplitEdges(SplitEdgesArgs),
     /// Say what this machine's graphics adapters can do, and what is missing
     Doctor(DoctorArgs),
     /// Print the completions of a shell

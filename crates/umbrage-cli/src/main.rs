@@ -14,6 +14,7 @@ mod progress;
 mod render;
 mod setup;
 mod specs;
+mod split_edges;
 mod techniques;
 mod text;
 mod threaded;
@@ -87,6 +88,7 @@ fn run(command: Command) -> Result<(), Fault> {
         Command::Techniques(args) => techniques::run(&args),
         Command::Passes(args) => passes::run(&args),
         Command::Wgsl(args) => wgsl::run(&args),
+        Command::SplitEdges(args) => split_edges::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Completions { shell } => generate::completions(shell),
         Command::Man { command } => generate::man(command.as_deref()),

@@ -106,17 +106,22 @@ fn draw(renderer: &mut Renderer<'_>, count: u32, statistics: bool) -> Result<Dra
 
 /// Can the picture be written there? Asked before any work.
 pub fn check_output(path: &Path) -> Result<(), Fault> {
+    check_file(path, "png", "pictures are PNG")
+}
+
+/// Can a file with this ending be written there? `what` says what it holds.
+pub fn check_file(path: &Path, wanted: &str, what: &str) -> Result<(), Fault> {
     let failed = |reason: &str| Fault::Failed(format!("cannot write {}: {reason}", path.display()));
     if path.is_dir() {
-        return Err(failed("it is a folder; name a .png file in it"));
+        return Err(failed(&format!("it is a folder; name a .{wanted} file in it")));
     }
     if path.file_name().is_none() {
         return Err(Fault::WrongUse(format!("--output: `{}` names no file", path.display())));
     }
-    if let Some(ending) = path.extension().filter(|ending| !ending.eq_ignore_ascii_case("png")) {
+    if let Some(ending) = path.extension().filter(|ending| !ending.eq_ignore_ascii_case(wanted)) {
         let ending = ending.to_string_lossy();
         return Err(Fault::WrongUse(format!(
-            "--output: pictures are PNG; let the name end in .png, not .{ending}"
+            "--output: {what}; let the name end in .{wanted}, not .{ending}"
         )));
     }
     if path.exists() && !path.is_file() {

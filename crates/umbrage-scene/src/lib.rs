@@ -14,6 +14,7 @@ mod normals;
 mod obj;
 mod pose;
 pub mod scene;
+mod split;
 mod tangents;
 
 pub use builtin::{Builtin, builtins};
@@ -23,6 +24,7 @@ pub use error::SceneError;
 pub use flat::plane_of;
 pub use pose::Pose;
 pub use scene::*;
+pub use split::{SplitCounts, SplitObj, split_obj};
 
 /// Loads what a user typed: `builtin:NAME`, or the path of a `.gltf`, `.glb` or `.obj` file. Animated files are at rest.
 ///
@@ -56,15 +58,7 @@ fn read(spec: &str, pose: Option<&Pose>) -> Result<Scene, SceneError> {
     }
     let path = std::path::Path::new(spec);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    // Before it is read: a pipe or a device might never end.
-    let about = std::fs::metadata(path).map_err(|e| SceneError::read(path, &e))?;
-    if about.is_dir() {
-        return Err(SceneError::read(path, &std::io::ErrorKind::IsADirectory.into()));
-    }
-    if !about.is_file() {
-        let reason = "it is no ordinary file; copy its contents to one".to_owned();
-        return Err(SceneError::Read { path: path.to_owned(), reason });
-    }
+    ordinary(path)?;
     let read = || std::fs::read(path).map_err(|e| SceneError::read(path, &e));
     let scene = match ending.as_str() {
         "gltf" | "glb" => gltf::load(path, &read()?, pose)?,
@@ -84,4 +78,17 @@ fn read(spec: &str, pose: Option<&Pose>) -> Result<Scene, SceneError> {
         }
     };
     check::check(scene, path)
+}
+
+/// Refuses folders, pipes and devices, before anything is read: they might never end.
+fn ordinary(path: &std::path::Path) -> Result<(), SceneError> {
+    let about = std::fs::metadata(path).map_err(|e| SceneError::read(path, &e))?;
+    if about.is_dir() {
+        return Err(SceneError::read(path, &std::io::ErrorKind::IsADirectory.into()));
+    }
+    if !about.is_file() {
+        let reason = "it is no ordinary file; copy its contents to one".to_owned();
+        return Err(SceneError::Read { path: path.to_owned(), reason });
+    }
+    Ok(())
 }

@@ -14,3 +14,15 @@ pub fn weld(positions: &[Vec3]) -> Vec<u32> {
         .map(|(i, p)| *first_at.entry((*p + 0.0).to_array().map(f32::to_bits)).or_insert(i))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minus_zero_is_zero_and_the_first_stands_for_all() {
+        let places = [Vec3::X, Vec3::ZERO, Vec3::new(-0.0, 0.0, -0.0), Vec3::X, Vec3::splat(f32::NAN)];
+        assert_eq!(weld(&places), [0, 1, 1, 0, 4]);
+        assert!(weld(&[]).is_empty());
+    }
+}

@@ -1,9 +1,9 @@
-//! Bytes to numbered lines: continuation joined, any encoding survived. OBJ and MTL share it.
+//! Bytes to numbered lines: continuation joined, any encoding survived. OBJ, MTL and what splits OBJ share it.
 
 use std::borrow::Cow;
 
 /// Lines with the number, from 1, at which each starts.
-pub(super) struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     rest: &'a [u8],
     separator: u8,
     number: usize,
@@ -11,10 +11,15 @@ pub(super) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     /// Lines of a whole file. A file without any `\n` is taken for an old Macintosh one, whose lines end in `\r`.
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         let rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let separator = if rest.contains(&b'\n') { b'\n' } else { b'\r' };
         Self { rest, separator, number: 0 }
+    }
+
+    /// Bytes that are not read yet.
+    pub(crate) fn remaining(&self) -> usize {
+        self.rest.len()
     }
 
     fn take(&mut self) -> &'a [u8] {
@@ -52,19 +57,19 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 /// The first word and what follows it, both trimmed.
-pub(super) fn keyword(line: &str) -> (&str, &str) {
+pub(crate) fn keyword(line: &str) -> (&str, &str) {
     line.split_once(char::is_whitespace).map_or((line, ""), |(key, rest)| (key, rest.trim()))
 }
 
 /// What the file says, made fit for a message of one line: quoted, escaped, cut.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let short: String = text.chars().take(40).collect();
     let dots = if short.len() < text.len() { "..." } else { "" };
     format!("{short:?}{dots}")
 }
 
 /// A number that is finite as `f32`.
-pub(super) fn finite(word: &str) -> Option<f32> {
+pub(crate) fn finite(word: &str) -> Option<f32> {
     word.parse().ok().filter(|x: &f32| x.is_finite())
 }
 

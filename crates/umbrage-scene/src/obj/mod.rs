@@ -4,13 +4,14 @@
 //! with the same material into one mesh: a file of a thousand small objects is a handful of draws.
 
 mod assemble;
-mod lines;
+pub(crate) mod lines;
 mod mtl;
 mod polygons;
 mod scan;
 mod textures;
 
 pub(crate) use polygons::newell;
+pub(crate) use scan::{vertex, words};
 
 use crate::{Instance, Scene, SceneError};
 use glam::Mat4;
@@ -19,9 +20,13 @@ use std::path::Path;
 /// More warnings than this help nobody.
 const MAX_WARNINGS: usize = 20;
 
-/// Loads an `.obj` file whose bytes are `bytes`; `path` is where its companions lie.
-pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
-    let mut scan = scan::scan(bytes).map_err(|what| SceneError::malformed(path, what))?;
+/// Refuses what cannot be loaded, in the same words.
+pub(crate) fn check(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    scanned(path, bytes).map(drop)
+}
+
+fn scanned(path: &Path, bytes: &[u8]) -> Result<scan::Scan, SceneError> {
+    let scan = scan::scan(bytes).map_err(|what| SceneError::malformed(path, what))?;
     if scan.runs.is_empty() {
         let (vertices, others) = (scan.vertices, scan.points_and_lines);
         let what = format!(
@@ -29,6 +34,12 @@ pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
         );
         return Err(SceneError::NoTriangles { path: path.to_owned(), what });
     }
+    Ok(scan)
+}
+
+/// Loads an `.obj` file whose bytes are `bytes`; `path` is where its companions lie.
+pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
+    let mut scan = scanned(path, bytes)?;
     let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
     let (models, _) = tobj::load_obj_buf(&mut scan.text.as_bytes(), &options, |_| Ok(Default::default()))
         .map_err(|e| SceneError::malformed(path, format!("{e}; export the file again")))?;

@@ -108,29 +108,38 @@ fn has_colors(bytes: &[u8]) -> bool {
 }
 
 /// Words up to a comment.
-fn words(rest: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn words(rest: &str) -> impl Iterator<Item = &str> {
     rest.split_whitespace().take_while(|word| !word.starts_with('#'))
+}
+
+/// A `v` line: the position, and all its numbers with their count.
+///
+/// # Errors
+/// One clause that names the line.
+pub(crate) fn vertex(number: usize, rest: &str) -> Result<([f32; 3], [f32; 6], usize), String> {
+    let wanted = "a vertex needs three finite numbers; mend or export the file again";
+    let mut numbers = [0.0f32; 6];
+    let mut count = 0;
+    for (slot, word) in numbers.iter_mut().zip(words(rest)) {
+        *slot =
+            finite(word).ok_or_else(|| format!("line {number}: {} is no number; {wanted}", quoted(word)))?;
+        count += 1;
+    }
+    if count < 3 {
+        return Err(format!("line {number}: {count} numbers; {wanted}"));
+    }
+    // A fourth number alone is the weight of a rational curve's point, which divides.
+    let weight = if count == 4 { numbers[3] } else { 1.0 };
+    let position = [0, 1, 2].map(|i| numbers[i] / weight);
+    if !position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
+        return Err(format!("line {number}: the position is beyond {MAX_COORDINATE:e}; {wanted}"));
+    }
+    Ok((position, numbers, count))
 }
 
 impl Scan {
     fn vertex(&mut self, number: usize, rest: &str) -> Result<(), String> {
-        let wanted = "a vertex needs three finite numbers; mend or export the file again";
-        let mut numbers = [0.0f32; 6];
-        let mut count = 0;
-        for (slot, word) in numbers.iter_mut().zip(words(rest)) {
-            *slot = finite(word)
-                .ok_or_else(|| format!("line {number}: {} is no number; {wanted}", quoted(word)))?;
-            count += 1;
-        }
-        if count < 3 {
-            return Err(format!("line {number}: {count} numbers; {wanted}"));
-        }
-        // A fourth number alone is the weight of a rational curve's point, which divides.
-        let weight = if count == 4 { numbers[3] } else { 1.0 };
-        let position = [0, 1, 2].map(|i| numbers[i] / weight);
-        if !position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
-            return Err(format!("line {number}: the position is beyond {MAX_COORDINATE:e}; {wanted}"));
-        }
+        let (position, numbers, count) = vertex(number, rest)?;
         let [x, y, z] = position;
         // With an exponent tiny numbers stay short.
         let _ = write!(self.text, "v {x:e} {y:e} {z:e}");

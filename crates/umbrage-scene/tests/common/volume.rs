@@ -77,13 +77,15 @@ impl Random {
     }
 }
 
-/// Points around a mesh, three times its size.
+/// Points around a mesh, in a box half as long again.
 pub fn points_around(positions: &[Vec3], count: usize, random: &mut Random) -> Vec<DVec3> {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for p in positions {
         low = low.min(p.as_dvec3());
         high = high.max(p.as_dvec3());
     }
-    let (middle, half) = ((low + high) / 2.0, (high - low).max_element() * 0.75);
+    let (middle, size) = ((low + high) / 2.0, high - low);
+    // Flat ones have room around them, too.
+    let half = size * 0.75 + size.max_element() * 0.1;
     (0..count).map(|_| middle + random.point() * half).collect()
 }
