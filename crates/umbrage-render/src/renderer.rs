@@ -135,7 +135,7 @@ impl<'a> Renderer<'a> {
         let mut set = MapSet::new(&gpu.device, most_views);
         maker.refresh(&mut set, &world)?;
 
-        let volumes = Volumes::new(
+        let mut volumes = Volumes::new(
             gpu,
             scene,
             &options.settings,
@@ -144,6 +144,9 @@ impl<'a> Renderer<'a> {
             options.size,
             set.lights.lights.len(),
         );
+        if let (Some(volumes), Some(depth_only)) = (&mut volumes, &targets.depth_only) {
+            volumes.soften(&gpu.device, &options.settings, options.size, depth_only);
+        }
         let needs = shader_needs(scene, &options, &maker.settings, maker.format.storage, &set.lights);
         let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs, depth);
         let screen =

@@ -7,15 +7,19 @@ use crate::screen_v::{SCREEN_V, ScreenV};
 use crate::timing::Queries;
 use glam::{Mat4, UVec2};
 use umbrage::core::edges::Adjacency;
-use umbrage::core::technique::volume::Volume;
+use umbrage::core::technique::volume::{Soften, Volume};
 use umbrage::core::technique::{Method, Settings};
 use umbrage::core::volume as maths;
 use umbrage::core::{DEPTH, Frustum};
+use umbrage::soften::{SoftenedV, Softener, Softness, record_soften, soften};
 use umbrage::volume::{
     Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, count_volumes,
     find_silhouettes, record_counts, record_silhouettes, record_visibility, write_visibility,
 };
 use umbrage_scene::{Mesh, Scene};
+
+/// What covering the screen asks of the GPU.
+const SCREEN: Work = Work { draws: 1, instances: 1, triangles: 1, vertices: 3 };
 
 /// The volumes of one light.
 #[derive(Debug, Default)]
@@ -48,6 +52,15 @@ pub(crate) struct Volumes {
     clip_from_world: wgpu::Buffer,
     lights: Vec<OfLight>,
     v: ScreenV,
+    soft: Option<Soft>,
+}
+
+/// What blurs V, and V of each light.
+#[derive(Debug)]
+struct Soft {
+    softness: Softness,
+    softener: Softener,
+    of_light: Vec<SoftenedV>,
 }
 
 fn shape(device: &wgpu::Device, pipelines: &VolumePipelines, mesh: &Mesh) -> Shape {
@@ -89,7 +102,29 @@ impl Volumes {
             }),
             lights: (0..lights).map(|_| OfLight::default()).collect(),
             v: ScreenV::new(device, size, lights),
+            soft: None,
         })
+    }
+
+    /// Makes what blurs V, where the technique asks for it, over the depth of the surfaces.
+    pub fn soften(
+        &mut self,
+        device: &wgpu::Device,
+        settings: &Settings,
+        size: UVec2,
+        depth_only: &wgpu::TextureView,
+    ) {
+        if self.choices.soften != Soften::Blur {
+            return;
+        }
+        let value = |name| settings.value(name).unwrap_or(0.0);
+        let softness =
+            Softness { width_px: value("soft_px"), width_m: value("soft_m"), like: value("like_depth") };
+        let softener = Softener::new(device, SCREEN_V, size.x, size.y);
+        let of_light = (0..self.lights.len())
+            .map(|light| softener.of(device, self.v.layer(light), depth_only))
+            .collect();
+        self.soft = Some(Soft { softness, softener, of_light });
     }
 
     /// V of all lights.
@@ -116,6 +151,11 @@ impl Volumes {
     ) -> Vec<String> {
         let mut warnings = Vec::new();
         gpu.queue.write_buffer(&self.clip_from_world, 0, bytemuck::bytes_of(&clip_from_world));
+        if let Some(soft) = &self.soft {
+            let clip_from_view =
+                clip_from_world.as_dmat4() * world.camera.view_from_world().as_dmat4().inverse();
+            soft.softener.write(&gpu.queue, &soft.softness, &clip_from_view.as_mat4());
+        }
         let frustum = Frustum::from_clip(clip_from_world, DEPTH);
         let near_world = maths::near_corners_world(clip_from_world, DEPTH.ndc_near());
         let scene_world = world.items.whole();
@@ -185,6 +225,9 @@ impl Volumes {
                 names.push(format!("{} {index}", faces.pass_name()));
             }
             names.push(format!("mask {index}"));
+            if self.soft.is_some() {
+                names.extend([format!("blur-rows {index}"), format!("blur-columns {index}")]);
+            }
         }
         names
     }
@@ -246,8 +289,19 @@ impl Volumes {
                     queries.count(recorded, pass, |recorded| write_visibility(recorded, &self.pipelines));
                 },
             );
-            works.push(Work { draws: 1, instances: 1, triangles: 1, vertices: 3 });
+            works.push(SCREEN);
             pass += 1;
+            for columns in self.soft.iter().flat_map(|_| [false, true]) {
+                let Some(soft) = &self.soft else { continue };
+                let v = self.v.layer(index);
+                record_soften(encoder, &soft.softener, v, columns, queries.stamps(pass), |recorded| {
+                    queries.count(recorded, pass, |recorded| {
+                        soften(recorded, &soft.softener, &soft.of_light[index], columns);
+                    });
+                });
+                works.push(SCREEN);
+                pass += 1;
+            }
         }
         works
     }
@@ -277,6 +331,7 @@ impl Volumes {
             .filter_map(|light| light.volumes.as_ref())
             .map(VolumeLight::memory_bytes)
             .sum();
-        meshes + lights + self.v.memory_bytes()
+        let soft = self.soft.as_ref().map_or(0, |soft| soft.softener.memory_bytes());
+        meshes + lights + soft + self.v.memory_bytes()
     }
 }

@@ -7,6 +7,7 @@ pub mod caster;
 pub mod format;
 pub mod maps;
 pub mod peel;
+pub mod soften;
 pub mod translucent;
 pub mod volume;
 
