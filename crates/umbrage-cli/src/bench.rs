@@ -39,6 +39,8 @@ struct Row {
     gpu_ms: Option<f64>,
     draws: u64,
     triangles: u64,
+    /// Of the outlines that a compute pass finds for volumes.
+    silhouette_edges: u64,
     vertices: u64,
     vertex_runs: Option<u64>,
     fragment_runs: Option<u64>,
@@ -180,6 +182,8 @@ fn row(settings: &Settings, renderer: &mut Renderer<'_>, timed: Timed) -> Result
     let counted = |of: fn(&json::StatisticsJson) -> u64| {
         passes.iter().map(|pass| pass.statistics.as_ref().map(of)).sum::<Option<u64>>()
     };
+    let found = renderer.silhouettes()?;
+    let silhouette_edges = found.iter().map(|of| of.silhouette_edges).sum();
     Ok(Row {
         technique: settings.technique.id,
         params: json::params(settings),
@@ -190,7 +194,9 @@ fn row(settings: &Settings, renderer: &mut Renderer<'_>, timed: Timed) -> Result
         shadow_cost_ms: 0.0,
         gpu_ms: passes.iter().map(|pass| pass.gpu_ms).sum(),
         draws: sum(|pass| pass.draws),
-        triangles: sum(|pass| pass.triangles),
+        triangles: sum(|pass| pass.triangles)
+            + if silhouette_edges > 0 { found.iter().map(|of| of.triangles_drawn).sum::<u64>() } else { 0 },
+        silhouette_edges,
         vertices: sum(|pass| pass.vertices),
         vertex_runs: counted(|s| s.vertex_runs),
         fragment_runs: counted(|s| s.fragment_runs),
@@ -221,6 +227,7 @@ fn describe(report: &Report) -> String {
         "passes",
         "draws",
         "triangles",
+        "silhouette edges",
         "vertices",
         "vertex runs",
         "fragment runs",
@@ -238,6 +245,7 @@ fn describe(report: &Report) -> String {
             row.passes.len().to_string(),
             text::count(row.draws),
             text::count(row.triangles),
+            text::count(row.silhouette_edges),
             text::count(row.vertices),
             runs(row.vertex_runs),
             runs(row.fragment_runs),

@@ -281,7 +281,7 @@ struct Answer {
 
 impl Answer {
     fn reach(&self, settings: &Settings) -> Reach {
-        Reach::new(&self.views, settings.map_size_texel(), settings.reach_texel())
+        Reach::of(settings, &self.views)
     }
 }
 

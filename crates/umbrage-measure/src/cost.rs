@@ -3,9 +3,9 @@
 use crate::MeasureError;
 use crate::numbers::median;
 use serde::Serialize;
-use umbrage_render::umbrage::core::plan::{Draws, plan};
-use umbrage_render::umbrage::core::technique::Settings;
-use umbrage_render::{Measure, Renderer};
+use umbrage_render::umbrage::core::plan::{Draws, Pass, Target, plan};
+use umbrage_render::umbrage::core::technique::{Method, Settings};
+use umbrage_render::{Measure, Renderer, Silhouettes};
 
 /// Times in milliseconds, and counts of the passes that make the shadow.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -20,14 +20,16 @@ pub struct Cost {
     pub frame_ms: f64,
     /// Median of frames without.
     pub unshadowed_ms: f64,
-    /// Shadow maps, and what is drawn on the way to them.
+    /// Shadow maps and what is drawn on the way to them; meshes, faces and V of volumes.
     pub memory_bytes: u64,
-    /// Passes that draw casters.
+    /// Passes that make the shadow.
     pub passes: u64,
     /// Their draw calls.
     pub draws: u64,
     /// Their triangles.
     pub triangles: u64,
+    /// Edges of outlines that a compute pass found for them; 0 without volumes.
+    pub silhouette_edges: u64,
     /// Texels that these passes draw to.
     pub texels: u64,
     /// Lookups of a map for each lit pixel.
@@ -58,13 +60,32 @@ impl Cost {
             shadowed.push(report.frame_ms);
         }
         let costs: Vec<f64> = shadowed.iter().zip(&bare).map(|(with, without)| with - without).collect();
-        // A pass of the plan has one name, followed by the view's number where each view has its own.
-        let planned: Vec<_> =
-            plan(settings).into_iter().filter(|pass| pass.draws != Draws::Surfaces).collect();
-        let of_casters = |name: &str| planned.iter().any(|pass| name.starts_with(pass.name));
-        let casters: Vec<_> = report.passes.iter().filter(|pass| of_casters(&pass.name)).collect();
-        let side = u64::from(settings.map_size_texel());
-        let is_shadowed = settings.combination().is_some();
+        // A pass of the plan has one name, followed by the view's number where each view has its own. The map that takes over for
+        // some casters is planned apart.
+        let fallback = settings.fallback();
+        let plans = [Some(settings), fallback.as_ref()].into_iter().flatten();
+        let planned: Vec<(Pass, u64)> = plans
+            .flat_map(|settings| {
+                let side = u64::from(settings.map_size_texel());
+                plan(settings).into_iter().map(move |pass| (pass, side * side))
+            })
+            .filter(|(pass, _)| !matches!(pass.draws, Draws::Surfaces | Draws::Depths))
+            .collect();
+        let size = with.options().size;
+        let pixels = u64::from(size.x) * u64::from(size.y);
+        let texels_of = |(pass, map): &(Pass, u64)| match pass.target {
+            Target::Faces => 0,
+            Target::Stencil | Target::Visibility => pixels,
+            _ => *map,
+        };
+        let of_shadow = |name: &str| planned.iter().find(|(pass, _)| name.starts_with(pass.name));
+        let shadow: Vec<_> =
+            report.passes.iter().filter_map(|pass| Some((pass, of_shadow(&pass.name)?))).collect();
+        let volumes = with.silhouettes()?;
+        let found = |of: fn(&Silhouettes) -> u64| volumes.iter().map(of).sum::<u64>();
+        let is_shadowed = settings.method != Method::None;
+        // Split edges are counted as they are drawn.
+        let by_compute = if found(|s| s.silhouette_edges) > 0 { found(|s| s.triangles_drawn) } else { 0 };
         Ok(Self {
             // Without a technique both are the same frame, and what they differ by is noise.
             cost_ms: if is_shadowed { median(&costs) } else { 0.0 },
@@ -77,10 +98,11 @@ impl Cost {
             frame_ms: median(&shadowed),
             unshadowed_ms: median(&bare),
             memory_bytes: with.shadow_memory_bytes(),
-            passes: casters.len() as u64,
-            draws: casters.iter().map(|pass| pass.work.draws).sum(),
-            triangles: casters.iter().map(|pass| pass.work.triangles).sum(),
-            texels: casters.len() as u64 * side * side,
+            passes: shadow.len() as u64,
+            draws: shadow.iter().map(|(pass, _)| pass.work.draws).sum(),
+            triangles: shadow.iter().map(|(pass, _)| pass.work.triangles).sum::<u64>() + by_compute,
+            silhouette_edges: found(|s| s.silhouette_edges),
+            texels: shadow.iter().map(|(_, planned)| texels_of(planned)).sum(),
             taps: u64::from(settings.taps() * settings.places()),
             pass_names: report.passes.iter().map(|pass| pass.name.clone()).collect(),
         })

@@ -4,6 +4,7 @@ use glam::DVec3;
 use umbrage_render::umbrage::core::DEPTH;
 use umbrage_render::umbrage::core::density::{Raster, texels_per_metre, texels_per_pixel};
 use umbrage_render::umbrage::core::fit::ShadowView;
+use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_truth::{LEAST_REACH_PX, Seen, Surfaces};
 
 /// How far a technique reaches around each surface.
@@ -12,6 +13,17 @@ pub struct Reach {
     maps: Vec<(ShadowView, Raster)>,
     /// The filter's radius and one texel more.
     texels: f64,
+    /// Radius of a blur on the screen, pixels, or on the surface, metres.
+    blur: Blur,
+}
+
+/// How far a blur of the picture reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Blur {
+    /// Pixels.
+    Px(f32),
+    /// Metres on the surface.
+    Metres(f32),
 }
 
 impl Reach {
@@ -19,7 +31,17 @@ impl Reach {
     /// whose middle a surface lies: the tile of a point light. Without a map there is nothing that a texel hides.
     pub fn new(views: &[ShadowView], size_texel: u32, filter_texel: f32) -> Self {
         let maps = views.iter().map(|view| (*view, view.raster(size_texel))).collect();
-        Self { maps, texels: f64::from(filter_texel) + 1.0 }
+        Self { maps, texels: f64::from(filter_texel) + 1.0, blur: Blur::Px(0.0) }
+    }
+
+    /// Of what a technique drew, whose maps are these: a blur on the screen reaches further.
+    pub fn of(settings: &Settings, views: &[ShadowView]) -> Self {
+        let maps = settings.fallback();
+        let maps = maps.as_ref().unwrap_or(settings);
+        let radius = |name: &str| 0.5 * settings.value(name).unwrap_or(0.0);
+        let blur =
+            if radius("soft_m") > 0.0 { Blur::Metres(radius("soft_m")) } else { Blur::Px(radius("soft_px")) };
+        Self { blur, ..Self::new(views, maps.map_size_texel(), maps.reach_texel()) }
     }
 
     /// Is there any map?
@@ -45,10 +67,16 @@ impl Reach {
         let picture = Raster::new(clip_from_world, surfaces.size);
         let reach = |seen: &Option<Seen>| {
             let Some(seen) = seen else { return LEAST_REACH_PX };
-            let Some(map) = self.map_of(seen.p_world) else { return LEAST_REACH_PX };
+            // A blur that is no whole number of pixels wide ends in the next.
+            let least_px = match self.blur {
+                Blur::Px(radius_px) if radius_px > 0.0 => LEAST_REACH_PX.max(radius_px + 1.0),
+                Blur::Metres(radius_m) => LEAST_REACH_PX.max(radius_m / surfaces.pixel_m(seen) as f32 + 1.0),
+                Blur::Px(_) => LEAST_REACH_PX,
+            };
+            let Some(map) = self.map_of(seen.p_world) else { return least_px };
             // A texel is longest where a pixel has fewest of them. Exact for warped views too.
             let density = texels_per_pixel(map, &picture, seen.p_world, seen.normal_world.as_dvec3());
-            ((self.texels / density.least) as f32).max(LEAST_REACH_PX)
+            ((self.texels / density.least) as f32).max(least_px)
         };
         surfaces.seen.iter().map(reach).collect()
     }

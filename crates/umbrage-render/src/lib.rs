@@ -48,3 +48,4 @@ pub use surfaces::DrawnSurface;
 pub use threaded::MapSchedule;
 pub use timing::{Measure, Statistics};
 pub use umbrage;
+pub use volumes::Silhouettes;

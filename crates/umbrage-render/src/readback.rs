@@ -42,6 +42,23 @@ pub fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
     Ok(bytes)
 }
 
+/// The bytes of a buffer that can be copied.
+///
+/// # Errors
+/// [`RenderError::Gpu`] with the device's words.
+pub fn buffer(gpu: &Gpu, source: &wgpu::Buffer) -> Result<Vec<u8>, RenderError> {
+    let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: source.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(source, 0, &read, 0, source.size());
+    gpu.queue.submit([encoder.finish()]);
+    map(gpu, &read)
+}
+
 /// The rows of a texture, without padding.
 ///
 /// # Errors

@@ -17,7 +17,7 @@ use crate::shaders::ShaderNeeds;
 use crate::targets::{TargetNeeds, Targets};
 use crate::textures::Textures;
 use crate::threaded::{MapSchedule, MapThread, locked};
-use crate::volumes::Volumes;
+use crate::volumes::{Silhouettes, Volumes};
 use crate::{RenderError, exposure, own_wgsl};
 use glam::{Mat4, Vec3};
 use std::ops::Range;
@@ -285,6 +285,14 @@ impl<'a> Renderer<'a> {
     /// What did not go as a user may expect.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// What each light sees of its casters' edges, after a frame; nothing for techniques without volumes. Waits for the GPU.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] when the device is lost.
+    pub fn silhouettes(&self) -> Result<Vec<Silhouettes>, RenderError> {
+        self.volumes.as_ref().map_or(Ok(Vec::new()), |volumes| volumes.silhouettes(self.gpu))
     }
 
     /// What solid and blended surfaces ask of the GPU.

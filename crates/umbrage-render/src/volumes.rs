@@ -1,8 +1,10 @@
 //! Shadow volumes of a scene's lights: which casters throw them, and what of them has to be found anew.
 
+use crate::RenderError;
 use crate::draw_list::Work;
 use crate::gpu::Gpu;
 use crate::moving::World;
+use crate::readback;
 use crate::screen_v::{SCREEN_V, ScreenV};
 use crate::timing::Queries;
 use glam::{Mat4, UVec2};
@@ -17,6 +19,19 @@ use umbrage::volume::{
     find_silhouettes, record_counts, record_silhouettes, record_visibility, write_visibility,
 };
 use umbrage_scene::{Mesh, Scene};
+
+/// What a light sees of edges, counted by the GPU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Silhouettes {
+    /// Edges of all its casters.
+    pub edges_looked_at: u64,
+    /// Those of the outline; twice where both of a part's sides cast. 0 with split edges, where nobody counts.
+    pub silhouette_edges: u64,
+    /// Triangles that face the light and close a volume.
+    pub lids: u64,
+    /// Triangles of all volumes that a frame draws into the stencil.
+    pub triangles_drawn: u64,
+}
 
 /// What covering the screen asks of the GPU.
 const SCREEN: Work = Work { draws: 1, instances: 1, triangles: 1, vertices: 3 };
@@ -320,6 +335,36 @@ impl Volumes {
                 ..sum
             }
         })
+    }
+
+    /// What the compute passes found, light by light; waits for the GPU.
+    pub fn silhouettes(&self, gpu: &Gpu) -> Result<Vec<Silhouettes>, RenderError> {
+        let turns = Faces::passes(self.choices.stencil).len() as u64;
+        let of_light = |light: &OfLight| {
+            let mut sum = Silhouettes::default();
+            let Some(volumes) = &light.volumes else { return Ok(sum) };
+            let bytes = readback::buffer(gpu, volumes.counts())?;
+            let number = |at: usize| {
+                bytes
+                    .get(4 * at..4 * at + 4)
+                    .map_or(0, |b| u64::from(u32::from_le_bytes(b.try_into().unwrap_or_default())))
+            };
+            for (i, caster) in volumes.casters().iter().enumerate() {
+                let Some(mesh) = &self.meshes[caster.mesh] else { continue };
+                sum.edges_looked_at += u64::from(mesh.edges());
+                sum.silhouette_edges += number(8 * i + 5);
+                sum.lids += number(8 * i + 6);
+                if light.draw.iter().any(|(drawn, _)| *drawn == i) {
+                    sum.triangles_drawn += turns
+                        * match mesh.split_triangles(caster.both_sides) {
+                            Some(all) => all,
+                            None => number(8 * i) / 3,
+                        };
+                }
+            }
+            Ok(sum)
+        };
+        self.lights.iter().map(of_light).collect()
     }
 
     /// Memory of meshes, faces and V, bytes.

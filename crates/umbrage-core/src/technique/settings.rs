@@ -1,6 +1,7 @@
 //! A technique with its parameters, as a user asked for it.
 
 use super::combination::Combination;
+use super::volume::Soften;
 use super::{Family, Method, Param, ParamDefault, Technique, find};
 
 /// A technique with every choice and parameter settled.
@@ -168,6 +169,16 @@ impl Settings {
 
     /// Lookups of the map for each lit pixel and view: a gather counts once.
     pub fn taps(&self) -> u32 {
+        if let Method::Volume(volume) = self.method {
+            // One of V; and two rows of neighbours where it is blurred, as wide as it is by pixels.
+            let radius_px = 0.5 * self.value("soft_px").unwrap_or(0.0);
+            let blurred = if volume.soften == Soften::Blur {
+                2 * (2 * radius_px.ceil().max(1.0) as u32 - 1)
+            } else {
+                0
+            };
+            return 1 + blurred;
+        }
         self.combination().map_or(0, |c| c.taps(self.value("width").unwrap_or(1.0)))
     }
 
