@@ -73,6 +73,45 @@ pub fn eye_may_be_in_shadow(near_corners_world: &[Vec3; 4], light_world: Vec4, c
     })
 }
 
+/// A plane behind everything that a caster can darken, `(unit normal away from the light, minus distance)`: its volume may end
+/// there, and what is not drawn beyond need not be counted. Of the sides of the scene's box (moved by the light's range) that
+/// which is nearest. `None` where a part of the caster's shadow may miss all of them; then a volume has no end.
+///
+/// `before_world` are points that must be before the plane, too: from there no sight of the scene goes through the volume's far
+/// end, so that its lid need not be drawn where faces before the surface are counted.
+pub fn far_plane_world(
+    light: &Light,
+    caster_world: &Aabb,
+    scene_world: &Aabb,
+    before_world: &[Vec3],
+) -> Option<Vec4> {
+    let light_world = light_point_world(light);
+    // Single precision moves both ends; what lies in the box's own side must be well before the plane.
+    let margin_m = 1e-3 * scene_world.size().length();
+    let corners = caster_world.corners();
+    let range_m = light.range_m.filter(|_| light_world.w != 0.0).unwrap_or(f32::INFINITY);
+    let planes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].map(|normal| {
+        let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), scene_world.max, scene_world.min);
+        let reach_m = normal.dot(light_world.xyz()) + range_m;
+        normal.extend(-(normal.dot(farthest).min(reach_m) + margin_m))
+    });
+    // How many times as far from the light as its caster the longest side ends; parallel light: metres.
+    let length = |plane: &Vec4| {
+        let of_corner = |p: &Vec3| {
+            let way = *p * light_world.w - light_world.xyz();
+            let speed = plane.xyz().dot(way);
+            // Rays that run along the plane end very far away, where single precision is coarse.
+            let meets = speed > 0.02 * way.length() && plane.dot(p.extend(1.0)) < 0.0;
+            if meets { -plane.dot(p.extend(1.0)) / speed } else { f32::INFINITY }
+        };
+        corners.iter().map(of_corner).fold(0.0, f32::max)
+    };
+    let is_behind_all = |plane: &Vec4| before_world.iter().all(|p| plane.dot(p.extend(1.0)) < 0.0);
+    let usable = planes.into_iter().filter(is_behind_all);
+    let best = usable.map(|plane| (length(&plane), plane)).min_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(length, _)| length.is_finite()).map(|(_, plane)| plane)
+}
+
 /// May the eye see any of what a caster darkens? `frustum` is the eye's. True when in doubt.
 pub fn shadow_may_be_seen(frustum: &Frustum, light_world: Vec4, caster_world: &Aabb) -> bool {
     frustum.may_see_swept(caster_world, |p| p * light_world.w - light_world.xyz())

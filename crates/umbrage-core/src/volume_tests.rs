@@ -114,3 +114,39 @@ fn a_caster_far_from_the_way_to_the_light_needs_no_caps_and_a_far_shadow_is_not_
         lit_pixels(&lamp, &around(Vec3::ZERO, 5.0), clip_from_world, UVec2::new(320, 200)).expect("seen");
     assert!(w < 60 && h < 60, "{w} {h}");
 }
+
+proptest! {
+    #[test]
+    fn every_hidden_point_of_the_scene_is_before_the_far_plane_and_every_ray_through_the_caster_meets_it(
+        light in point(-8.0..8.0), kind in 0usize..3, center in point(-4.0..4.0), half in 0.05f32..1.0,
+        p in point(-5.0..5.0), range in 0.5f32..20.0, at in point(-1.0..1.0),
+    ) {
+        let kind = [LightKind::Directional, LightKind::Point, LightKind::Spot { inner_rad: 0.1, outer_rad: 0.7 }][kind];
+        let light = Light { kind, range_m: Some(range), ..Light::default() }.aimed(light, Vec3::ZERO);
+        let (caster, scene) = (around(center, half), around(Vec3::ZERO, 5.0));
+        let Some(plane) = far_plane_world(&light, &caster, &scene, &[]) else { return Ok(()) };
+        let light_world = light_point_world(&light);
+        let is_lit = light_world.w == 0.0 || p.distance(light.position_world) <= range;
+        if is_lit && is_hidden(p, light_world, &caster) {
+            prop_assert!(plane.dot(p.extend(1.0)) < 0.0);
+        }
+        let q = center + at * half;
+        let way = q * light_world.w - light_world.xyz();
+        prop_assert!(plane.xyz().dot(way) > 0.0 && plane.dot(q.extend(1.0)) < 0.0);
+    }
+}
+
+#[test]
+fn a_volume_over_a_floor_ends_below_it() {
+    let lamp =
+        Light { kind: LightKind::Point, range_m: None, ..Light::default() }.aimed(Vec3::Y * 4.0, Vec3::ZERO);
+    let scene = Aabb { min: Vec3::new(-5.0, 0.0, -5.0), max: Vec3::new(5.0, 2.0, 5.0) };
+    let block = around(Vec3::new(1.0, 1.0, 0.0), 0.5);
+    let plane = far_plane_world(&lamp, &block, &scene, &[Vec3::Y]).expect("the floor");
+    assert!(plane.xyz() == Vec3::NEG_Y && plane.w < 0.0 && plane.w > -0.1, "{plane}");
+    // A caster all around the lamp has no such plane.
+    assert_eq!(far_plane_world(&lamp, &around(Vec3::Y * 4.0, 1.0), &scene, &[]), None);
+    // An eye below the floor looks into it.
+    let other = far_plane_world(&lamp, &block, &scene, &[Vec3::NEG_Y]).expect("a wall");
+    assert!(other.xyz() != Vec3::NEG_Y, "{other}");
+}

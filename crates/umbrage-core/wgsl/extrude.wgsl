@@ -6,11 +6,16 @@ fn umbrage_faces_light(plane: vec4f, light: vec4f) -> bool {
 }
 
 // Where a caster's point begins to darken, or where that ends: homogeneous, world space. `inset_m` is how far behind the
-// surface the volume begins; `extrude_m` how long it is, 0 without end (w is then 0: a direction).
-fn umbrage_extrude(p_world: vec3f, light_world: vec4f, inset_m: f32, extrude_m: f32, is_far: bool) -> vec4f {
+// surface the volume begins; `extrude_m` how long it is. Where that is 0 it ends on `far_plane`, which all of the light's rays
+// through the caster meet behind it; and where that is 0 too, nowhere: w is then 0, and the end is a direction.
+fn umbrage_extrude(
+    p_world: vec3f, light_world: vec4f, inset_m: f32, extrude_m: f32, far_plane: vec4f, is_far: bool,
+) -> vec4f {
     let away = p_world * light_world.w - light_world.xyz;
     if is_far && extrude_m <= 0.0 {
-        return vec4f(away, 0.0);
+        let speed = dot(far_plane.xyz, away);
+        let before = dot(far_plane, vec4f(p_world, 1.0));
+        return select(vec4f(away, 0.0), vec4f(p_world * speed - away * before, speed), any(far_plane.xyz != vec3f(0.0)));
     }
     let moved_m = inset_m + select(0.0, extrude_m, is_far);
     if moved_m <= 0.0 {

@@ -192,6 +192,9 @@ impl Volumes {
                     draw.push((casters.len(), counted));
                 }
                 let is_behind = counted == Counted::Behind;
+                let eye = near_world.filter(|_| !is_behind);
+                let eye = eye.as_ref().map_or(&[][..], |corners| corners);
+                let far_plane_world = maths::far_plane_world(light, &placed.bounds_world, &scene_world, eye);
                 casters.push(VolumeCaster {
                     mesh: placed.mesh,
                     version: world.mesh_versions[placed.mesh],
@@ -199,10 +202,12 @@ impl Volumes {
                     light_world,
                     inset_m: self.inset_m,
                     extrude_m: self.extrude_m,
+                    far_plane_world,
                     both_sides,
                     // What is not closed may be seen from behind, and then its lid is looked through.
                     near_caps: is_behind || both_sides || self.open[placed.mesh],
-                    far_caps: is_behind,
+                    // A volume of a set length may be looked into from behind.
+                    far_caps: is_behind || self.extrude_m > 0.0,
                     winding: VolumeCaster::winding_of(&placed.world_from_object),
                 });
             }

@@ -13,7 +13,7 @@ struct Drawn {
 fn drawn(p_object: vec3f, is_far: bool) -> Drawn {
     let p = vec4f(p_object, 1.0);
     let p_world = vec3f(dot(caster.row_x, p), dot(caster.row_y, p), dot(caster.row_z, p));
-    let end = umbrage_extrude(p_world, caster.light_world, caster.inset_m, caster.extrude_m, is_far);
+    let end = umbrage_extrude(p_world, caster.light_world, caster.inset_m, caster.extrude_m, caster.far_plane, is_far);
     return Drawn(clip_from_world * end);
 }
 

@@ -7,9 +7,11 @@ struct VolumeCaster {
     // The light's place and 1, or the direction towards it and 0: in the caster's space and in the world's.
     light_object: vec4f,
     light_world: vec4f,
+    // Where the volume ends, see `umbrage_extrude`; 0: nowhere.
+    far_plane: vec4f,
     // How far behind the surface the volume begins, metres.
     inset_m: f32,
-    // How long it is, metres; 0: without end.
+    // How long it is, metres; 0: the plane says.
     extrude_m: f32,
     triangles: u32,
     edges: u32,

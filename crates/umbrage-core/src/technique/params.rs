@@ -190,8 +190,8 @@ pub(super) const EXTRUDE: Param = Param {
     max: 1e9,
     step: 0.1,
     default: ParamDefault::Fixed(0.0),
-    help: "how far a volume reaches beyond its caster; 0: without end",
-    cost: "fewer pixels are counted than without end; what lies beyond stays lit",
+    help: "how far a volume reaches beyond its caster; 0: as far as there is anything that the light reaches",
+    cost: "fewer pixels are counted; what lies beyond stays lit, and where the caster is wide, some of what lies before",
 };
 
 pub(super) const SOFT_PX: Param = Param {

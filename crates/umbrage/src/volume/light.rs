@@ -34,13 +34,15 @@ pub struct VolumeCaster {
     pub light_world: Vec4,
     /// How far behind the surface, along the light, the volume begins, metres.
     pub inset_m: f32,
-    /// How long it is, metres; 0: without end.
+    /// How long it is, metres; 0: as long as `far_plane_world` says.
     pub extrude_m: f32,
+    /// Where it ends: see [`umbrage_core::volume::far_plane_world`]. `None`: nowhere.
+    pub far_plane_world: Option<Vec4>,
     /// Closed parts cast from both sides too: for a light that may be inside of them.
     pub both_sides: bool,
     /// Lids at the lit surface: for faces counted behind, and for open meshes.
     pub near_caps: bool,
-    /// Lids at the far end: for faces counted behind.
+    /// Lids at the far end: for faces counted behind, and where the eye may see it.
     pub far_caps: bool,
     /// Follows from the transform: see [`VolumeCaster::winding_of`].
     pub winding: Winding,
@@ -59,7 +61,7 @@ impl VolumeCaster {
 
     /// Parallel light without end: all of the volume's far end is one place.
     fn ends_in_a_point(&self) -> bool {
-        self.light_world.w == 0.0 && self.extrude_m <= 0.0
+        self.light_world.w == 0.0 && self.extrude_m <= 0.0 && self.far_plane_world.is_none()
     }
 }
 
@@ -70,6 +72,7 @@ pub(super) struct GpuVolumeCaster {
     pub rows: [Vec4; 3],
     pub light_object: Vec4,
     pub light_world: Vec4,
+    pub far_plane: Vec4,
     pub inset_m: f32,
     pub extrude_m: f32,
     pub triangles: u32,
@@ -136,6 +139,7 @@ impl VolumeLight {
                 rows: [world.row(0), world.row(1), world.row(2)],
                 light_object: light_point_object(caster.light_world, world),
                 light_world: caster.light_world,
+                far_plane: caster.far_plane_world.unwrap_or_default(),
                 inset_m: caster.inset_m,
                 extrude_m: caster.extrude_m,
                 triangles: mesh.triangles(),

@@ -7,7 +7,7 @@
 //! another, an inset puts the lids behind.
 //!
 //! Counts wrap at 256, so that only their end counts, not the order of their faces; a pixel within exactly 256 volumes would be
-//! lit. Without end ([`VolumeCaster::extrude_m`] 0) a far plane may not cut volumes: either the device has
+//! lit. Where a volume has no end ([`VolumeCaster::far_plane_world`]) the eye's far plane may not cut it: either the device has
 //! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane.
 
 mod light;

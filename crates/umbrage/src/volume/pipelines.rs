@@ -293,6 +293,7 @@ mod tests {
                 ("row_z", offset_of!(GpuVolumeCaster, rows) + 32),
                 ("light_object", offset_of!(GpuVolumeCaster, light_object)),
                 ("light_world", offset_of!(GpuVolumeCaster, light_world)),
+                ("far_plane", offset_of!(GpuVolumeCaster, far_plane)),
                 ("inset_m", offset_of!(GpuVolumeCaster, inset_m)),
                 ("extrude_m", offset_of!(GpuVolumeCaster, extrude_m)),
                 ("triangles", offset_of!(GpuVolumeCaster, triangles)),
