@@ -73,6 +73,7 @@ pub const MODULES: &[Module] = &[
         "comparisons with all texels that a kernel reaches, blended",
         ["map", "compare", "kernel"]
     ),
+    module!("mask", "the outline of one blocker, projected on what lies behind it", []),
     module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
     module!("colored", "colours of four texels, and what they make of comparisons", ["view", "taps"]),
     module!("filter/colored_nearest", "`filter/nearest` with coloured light", ["map", "compare", "colored"]),
