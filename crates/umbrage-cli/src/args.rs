@@ -131,6 +131,18 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N,...", value_delimiter = ',', help_heading = "Scene")]
     pub lights: Vec<String>,
 
+    /// Let this object throw no shadows; may be given several times
+    ///
+    /// Names are those of nodes, then of meshes, of a glTF file, and of the materials of an OBJ file; every object of that name
+    /// is meant. A number counts objects from 0. A glTF file may say so itself, in the extras of a node:
+    /// "umbrage": {"blocker": false, "receiver": false}.
+    #[arg(long, value_name = "NAME", help_heading = "Scene")]
+    pub no_blocker: Vec<String>,
+
+    /// Let no shadows fall on this object; may be given several times
+    #[arg(long, value_name = "NAME", help_heading = "Scene")]
+    pub no_receiver: Vec<String>,
+
     /// Width and height in pixels [default: 1280x720]
     #[arg(long, value_name = "WxH", value_parser = specs::size, help_heading = "Picture")]
     pub size: Option<UVec2>,

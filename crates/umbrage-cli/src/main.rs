@@ -12,6 +12,7 @@ mod json;
 mod passes;
 mod progress;
 mod render;
+mod roles;
 mod setup;
 mod specs;
 mod split_edges;

@@ -3,6 +3,7 @@
 use crate::args::SceneArgs;
 use crate::cases::{self, Case};
 use crate::fault::{Fault, suggest};
+use crate::roles;
 use crate::specs::{CameraChoice, CameraSpec, Exposure, Pair};
 use glam::{UVec2, Vec3};
 use std::path::Path;
@@ -82,6 +83,7 @@ pub fn stage(args: &SceneArgs) -> Result<Stage, Fault> {
     if args.ground {
         umbrage_scene::add_ground(&mut scene);
     }
+    roles::take(&mut scene, args)?;
     let size = args.size.unwrap_or(size);
     let light_numbers = keep_lights(&mut scene, &args.lights)?;
     let background = args.background.or(background);

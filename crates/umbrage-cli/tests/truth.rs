@@ -94,6 +94,19 @@ fn the_truth_needs_no_adapter_and_is_the_same_twice() {
 }
 
 #[test]
+fn objects_lose_their_roles_by_name_or_number() {
+    let folder = Folder::new("roles");
+    let args = "truth builtin:torus --size 96x54 --json -o t.png";
+    let lit = |more: &str| json(&folder.0, &format!("{args} {more}"))["lit"].as_f64().expect("a share");
+    let all = lit("");
+    assert!(lit("--no-blocker torus") > all + 0.02);
+    assert!(lit("--no-blocker torus --no-blocker floor") >= lit("--no-blocker torus"));
+    assert!(lit("--no-blocker 0 --no-blocker 1 --no-blocker 2 --no-blocker 3 --no-blocker 4") == 1.0);
+    refused(&folder.0, &format!("{args} --no-receiver flor"), 2, "did you mean `floor`?");
+    refused(&folder.0, &format!("{args} --no-blocker 5"), 2, "there are 5");
+}
+
+#[test]
 fn a_lit_picture_with_true_shadows() {
     if !has_adapter() {
         return;

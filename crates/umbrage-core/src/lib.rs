@@ -13,6 +13,7 @@ pub mod fit;
 pub mod frustum;
 pub mod idle;
 pub mod layout;
+pub mod layout_mask;
 pub mod light;
 pub mod lookup;
 pub mod plan;

@@ -75,6 +75,7 @@ pub const MODULES: &[Module] = &[
     ),
     module!("extrude", "the two ends of a shadow volume, and which triangles face a light", []),
     module!("like_depth", "which neighbouring pixels are on one surface", []),
+    module!("mask", "the outline of one blocker, projected on what lies behind it", []),
     module!("density", "texels per pixel: how finely a map samples what a picture shows", []),
     module!("colored", "colours of four texels, and what they make of comparisons", ["view", "taps"]),
     module!("filter/colored_nearest", "`filter/nearest` with coloured light", ["map", "compare", "colored"]),

@@ -46,9 +46,9 @@ pub fn deformed(gpu: &Gpu, scene: &Scene, options: &RenderOptions) -> Result<Sce
             mesh.indices.clone()
         };
         moved.instances.push(Instance {
-            name: placed.name.clone(),
             mesh: moved.meshes.len(),
             world_from_object: Mat4::IDENTITY,
+            ..placed.clone()
         });
         moved.meshes.push(Mesh {
             bounds: Aabb::from_points(positions.iter().copied()),

@@ -41,7 +41,7 @@ fn two_places() -> Scene {
         let aim = Vec3::new(x, 0.0, 0.0);
         for (mesh, y) in [(0, 0.0), (1, 1.2)] {
             let world_from_object = Mat4::from_translation(aim + Vec3::Y * y);
-            scene.instances.push(Instance { name: String::new(), mesh, world_from_object });
+            scene.instances.push(Instance { mesh, world_from_object, ..Instance::default() });
         }
         let light = Light::spot(aim + Vec3::new(0.7, 6.0, 0.4), aim, 0.3, 0.4);
         // Planes that are fitted would follow the box, and the matrices with them.
@@ -162,7 +162,7 @@ fn a_caster_that_no_light_sees_moves_for_nothing() {
     let Some(gpu) = gpu() else { return };
     let mut scene = two_places();
     let aside = |z: f32| Mat4::from_translation(Vec3::new(0.0, 1.0, z)) * Mat4::from_scale(Vec3::splat(0.4));
-    scene.instances.push(Instance { name: String::new(), mesh: 1, world_from_object: aside(0.0) });
+    scene.instances.push(Instance { mesh: 1, world_from_object: aside(0.0), ..Instance::default() });
     let mut renderer = renderer(&gpu, &scene);
     let (_, before) = frame(&mut renderer);
     renderer.place(4, aside(2.0)).expect("placed");
@@ -400,7 +400,7 @@ fn memory_is_linear_in_lights_and_knows_nothing_of_the_scene() {
     let mut larger = scene.clone();
     for step in 0..300 {
         let world_from_object = Mat4::from_translation(Vec3::new(-5.0, 0.01 * step as f32, 0.0));
-        larger.instances.push(Instance { name: String::new(), mesh: 1, world_from_object });
+        larger.instances.push(Instance { mesh: 1, world_from_object, ..Instance::default() });
     }
     assert_eq!(with(&larger, 5, depth()).0, 5 * one.0);
     let bare = with(&scene, 3, settings("unshadowed", &[]));

@@ -28,7 +28,7 @@ fn speck(light: &Light, view: &ShadowView, texel: UVec2) -> (Scene, Vec3) {
     let mesh = sheet(p_world, axes.x_axis * half, axes.y_axis * half, 0);
     let mut scene = Scene { materials: vec![Material::default()], meshes: vec![mesh], ..Scene::default() };
     let world_from_object = glam::Mat4::IDENTITY;
-    scene.instances = vec![Instance { name: String::new(), mesh: 0, world_from_object }];
+    scene.instances = vec![Instance { world_from_object, ..Instance::default() }];
     let camera = Camera::look_at(Vec3::new(0.0, 1.0, 9.0), Vec3::ZERO, 0.8, 0.1, 50.0);
     scene.cameras = vec![SceneCamera { name: String::new(), camera }];
     (with_light(scene, *light), p_world)

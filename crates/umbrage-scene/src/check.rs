@@ -159,7 +159,7 @@ fn drop_flat(mesh: &mut Mesh) -> usize {
 
 /// Checks instances; takes out meshes without triangles and instances that show nothing.
 fn instances(scene: &mut Scene) -> Result<(), String> {
-    for (number, Instance { name, mesh, world_from_object }) in scene.instances.iter().enumerate() {
+    for (number, Instance { name, mesh, world_from_object, .. }) in scene.instances.iter().enumerate() {
         let place = format!("instance {number} \"{}\"", one_line(name));
         let Some(mesh) = scene.meshes.get(*mesh) else {
             return Err(format!("{place}: mesh {mesh} of {} does not exist", scene.meshes.len()));
@@ -187,6 +187,13 @@ fn instances(scene: &mut Scene) -> Result<(), String> {
         }
         None => false,
     });
+    // Objects that are left keep their order and close the gaps.
+    let mut numbers: Vec<u32> = scene.instances.iter().map(|instance| instance.object).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    for instance in &mut scene.instances {
+        instance.object = numbers.partition_point(|number| *number < instance.object) as u32;
+    }
     Ok(())
 }
 
@@ -222,7 +229,7 @@ mod tests {
                 indices: vec![0, 1, 2],
                 ..Mesh::default()
             }],
-            instances: vec![Instance { name: "I".into(), mesh: 0, world_from_object: Mat4::IDENTITY }],
+            instances: vec![Instance { name: "I".into(), ..Instance::default() }],
             ..Scene::default()
         }
     }
@@ -283,8 +290,10 @@ mod tests {
         let mut scene = triangle();
         scene.meshes.insert(0, Mesh::default());
         scene.instances[0].mesh = 1;
-        scene.instances.push(Instance { name: String::new(), mesh: 0, world_from_object: Mat4::IDENTITY });
+        scene.instances[0].object = 7;
+        scene.instances.push(Instance { object: 1, ..Instance::default() });
         let scene = gate(scene).unwrap();
         assert_eq!((scene.meshes.len(), scene.instances.len(), scene.instances[0].mesh), (1, 1, 0));
+        assert_eq!(scene.instances[0].object, 0, "numbers have no gaps");
     }
 }

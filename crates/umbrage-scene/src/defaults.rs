@@ -1,7 +1,7 @@
 //! What a scene needs to be looked at and lacks: a camera, a light, a ground.
 
 use crate::{Instance, Material, Mesh, Reflectance, Scene, SceneCamera, SceneLight};
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use umbrage_core::{Aabb, Camera, Light};
 
 /// Full angle of the camera from bottom to top.
@@ -117,7 +117,8 @@ pub fn add_ground(scene: &mut Scene) {
         material,
         ..Mesh::default()
     });
-    scene.instances.push(Instance { name: "ground".into(), mesh, world_from_object: Mat4::IDENTITY });
+    let object = scene.objects();
+    scene.instances.push(Instance { name: "ground".into(), mesh, object, ..Instance::default() });
 }
 
 #[cfg(test)]
@@ -138,7 +139,7 @@ mod tests {
         Scene {
             meshes: vec![mesh],
             materials: vec![Material::default()],
-            instances: vec![Instance { name: String::new(), mesh: 0, world_from_object: Mat4::IDENTITY }],
+            instances: vec![Instance::default()],
             ..Scene::default()
         }
     }

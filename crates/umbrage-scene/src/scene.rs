@@ -64,8 +64,23 @@ pub struct Mesh {
     pub bounds: Aabb,
 }
 
-/// A mesh at a place.
-#[derive(Clone, Debug)]
+/// What an object does with light. Default: both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Roles {
+    /// It throws shadows on others.
+    pub blocker: bool,
+    /// Others throw shadows on it.
+    pub receiver: bool,
+}
+
+impl Default for Roles {
+    fn default() -> Self {
+        Self { blocker: true, receiver: true }
+    }
+}
+
+/// A mesh at a place. The default is the first mesh at the origin, of object 0.
+#[derive(Clone, Debug, Default)]
 pub struct Instance {
     /// What the file calls the node; may be empty.
     pub name: String,
@@ -73,6 +88,12 @@ pub struct Instance {
     pub mesh: usize,
     /// Finite and affine. A mirrored transform (negative determinant) turns the winding.
     pub world_from_object: Mat4,
+    /// What it does with light.
+    pub roles: Roles,
+    /// Number of the object that it is a part of, from 0 without gaps in a loaded scene. An object is a glTF node with a mesh,
+    /// whose primitives share its number; each place of `EXT_mesh_gpu_instancing`; or all faces of one material of an
+    /// OBJ file, whose `o` and `g` lines are not kept apart.
+    pub object: u32,
 }
 
 /// What happens where a surface is not solid.
@@ -226,6 +247,11 @@ impl Scene {
         self.instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
             bounds.union(&self.meshes[instance.mesh].bounds.transformed(&instance.world_from_object))
         })
+    }
+
+    /// The number of objects, which is the number of the next one. At most 2^32 - 1 are counted.
+    pub fn objects(&self) -> u32 {
+        self.instances.iter().map(|instance| instance.object.saturating_add(1)).max().unwrap_or(0)
     }
 
     /// Triangles drawn: each mesh counted once for each of its instances.

@@ -214,6 +214,55 @@ fn instancing_places_one_mesh_many_times() {
 }
 
 #[test]
+fn each_node_and_each_place_is_an_object() {
+    let mut glb = Glb::square();
+    let primitive = glb.json["meshes"][0]["primitives"][0].clone();
+    glb.json["meshes"][0]["primitives"] = json!([primitive, primitive]);
+    let places = glb.accessor(&f32s(&[0.0, 0.0, 0.0, 9.0, 0.0, 0.0]), F32, "VEC3", 2, false);
+    glb.json["nodes"] = json!([
+        {"mesh": 0, "name": "one"},
+        {"name": "no mesh, no object"},
+        {"mesh": 0, "name": "two",
+         "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}}},
+        {"mesh": 0, "name": "last"},
+    ]);
+    glb.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    let scene = sound(&glb);
+    let objects: Vec<_> = scene.instances.iter().map(|i| (i.name.as_str(), i.object)).collect();
+    let two = [("two", 1), ("two", 2), ("two", 1), ("two", 2)];
+    assert_eq!(objects, [&[("one", 0), ("one", 0)][..], &two, &[("last", 3), ("last", 3)]].concat());
+    assert_eq!(scene.objects(), 4);
+}
+
+#[test]
+fn extras_say_roles_and_children_do_not_inherit_them() {
+    let mut glb = Glb::square();
+    let roles = |extras| json!({"mesh": 0, "name": "N", "extras": extras});
+    let said = [
+        (json!({"umbrage": {"blocker": false}}), [false, true], ""),
+        (json!({"umbrage": {"blocker": false, "receiver": false}, "other": 1}), [false, false], ""),
+        (json!({"umbrage": {"receiver": false, "blocker": true}}), [true, false], ""),
+        (json!({"umbrage": {}}), [true, true], ""),
+        (json!({"blocker": false}), [true, true], ""),
+        (json!("umbrage"), [true, true], ""),
+        (json!(null), [true, true], ""),
+        (json!({"umbrage": false}), [true, true], "no object of `blocker`"),
+        (json!({"umbrage": {"blocker": 0, "receiver": false}}), [true, false], "neither true nor false"),
+        (json!({"umbrage": {"blokcer": false}}), [true, true], "`blokcer` is passed over"),
+    ];
+    for (extras, expected, warning) in said {
+        let mut parent = roles(extras.clone());
+        parent["children"] = json!([1]);
+        glb.json["nodes"] = json!([parent, {"mesh": 0, "name": "child"}]);
+        let scene = sound(&glb);
+        let found = scene.instances.iter().map(|i| [i.roles.blocker, i.roles.receiver]);
+        assert_eq!(found.collect::<Vec<_>>(), [expected, [true, true]], "{extras}");
+        let warned = scene.warnings.iter().any(|w| w.contains(warning) && w.contains("extras.umbrage"));
+        assert_eq!(warned, !warning.is_empty(), "{extras}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
 fn materials_keep_what_the_file_says() {
     let mut glb = Glb::square();
     glb.json["materials"] = json!([

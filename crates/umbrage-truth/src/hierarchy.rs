@@ -51,6 +51,8 @@ pub struct Rays<'a> {
     pub(crate) triangles: Triangles,
     /// Each has the boxes of its children; unused ones are [`NO_CHILD`]. The first is the root.
     pub(crate) nodes: Vec<[Bvh2Node; 4]>,
+    /// Is any object no receiver? Only then is it asked which one a pixel shows.
+    has_exempt: bool,
 }
 
 /// Nodes and leaves that are still to be visited: index of the node or of the leaf's first triangle, triangles (0: a
@@ -101,8 +103,9 @@ impl<'a> Rays<'a> {
     /// [`TruthError::TooManyTriangles`].
     pub fn new(scene: &'a Scene) -> Result<Self, TruthError> {
         let mut triangles = Triangles::new(scene)?;
+        let has_exempt = scene.instances.iter().any(|instance| !instance.roles.receiver);
         if triangles.corners.is_empty() {
-            return Ok(Self { scene, triangles, nodes: Vec::new() });
+            return Ok(Self { scene, triangles, nodes: Vec::new(), has_exempt });
         }
         let params = BvhBuildParams { collapse_traversal_cost: LEAF_COST, ..BvhBuildParams::medium_build() };
         let built = build_bvh2(&triangles.corners, params, &mut std::time::Duration::default());
@@ -116,7 +119,7 @@ impl<'a> Rays<'a> {
             child.min -= margin;
             child.max += margin;
         }
-        Ok(Self { scene, triangles, nodes })
+        Ok(Self { scene, triangles, nodes, has_exempt })
     }
 
     /// Triangles that rays can hit.
@@ -153,6 +156,11 @@ impl<'a> Rays<'a> {
     /// Index of the instance that a triangle belongs to.
     pub fn instance(&self, slot: u32) -> usize {
         self.triangles.origin_of(self.triangles.tags[slot as usize]).0
+    }
+
+    /// Does a triangle belong to an object that receives no shadow?
+    pub fn is_exempt(&self, slot: u32) -> bool {
+        self.has_exempt && !self.scene.instances[self.instance(slot)].roles.receiver
     }
 
     /// The rays of a packet, and by how much their distances are shorter there.
@@ -212,10 +220,13 @@ impl<'a> Rays<'a> {
         light
     }
 
-    /// What a surface lets through where it was hit.
+    /// What a surface lets through where it was hit: light passes what is no blocker as if it were not there.
     #[inline(never)]
-    pub(crate) fn pierced(&self, tag: Tag, u: f64, v: f64) -> Vec3 {
+    pub(crate) fn pierced(&self, tag: Tag, u: f64, v: f64, sight: bool) -> Vec3 {
         let (instance, triangle) = self.triangles.origin_of(tag);
+        if !sight && !self.scene.instances[instance].roles.blocker {
+            return Vec3::ONE;
+        }
         surface::light_through(self.scene, instance, triangle, u, v)
     }
 }

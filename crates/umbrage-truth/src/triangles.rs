@@ -4,12 +4,12 @@ use crate::TruthError;
 use glam::{DVec3, Mat4, Vec3};
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
-use umbrage_scene::{AlphaMode, Material, Scene};
+use umbrage_scene::{AlphaMode, Material, Mesh, Roles, Scene};
 
 /// Triangles that an index with flags can count.
 pub const MOST: u64 = 1 << 29;
 
-/// The triangle's surface has holes or is translucent: a ray that hits it may go on.
+/// The triangle's surface has holes, is translucent or belongs to no blocker: a ray that hits it may go on.
 const PIERCEABLE: u32 = 1 << 31;
 /// Both of its sides are seen.
 const DOUBLE_SIDED: u32 = 1 << 30;
@@ -41,11 +41,11 @@ impl Tag {
         self.0 & BLENDED != 0
     }
 
-    fn new(index: u32, material: &Material) -> Self {
+    fn new(index: u32, material: &Material, roles: Roles) -> Self {
         let flag = |is: bool, flag: u32| if is { flag } else { 0 };
         Self(
             index
-                | flag(material.alpha != AlphaMode::Opaque, PIERCEABLE)
+                | flag(material.alpha != AlphaMode::Opaque || !roles.blocker, PIERCEABLE)
                 | flag(material.double_sided, DOUBLE_SIDED)
                 | flag(material.alpha == AlphaMode::Blend, BLENDED),
         )
@@ -101,19 +101,15 @@ impl Triangles {
         for instance in &scene.instances {
             made.first_of_instance.push(made.corners.len() as u32);
             let mesh = &scene.meshes[instance.mesh];
-            made.add(
-                &mesh.positions,
-                &mesh.indices,
-                &instance.world_from_object,
-                &scene.materials[mesh.material],
-            );
+            made.add(mesh, &instance.world_from_object, &scene.materials[mesh.material], instance.roles);
         }
         made.first_of_instance.push(made.corners.len() as u32);
         made.magnitude_m = made.extent_m + made.center_world.abs().max_element() as f32;
         Ok(made)
     }
 
-    fn add(&mut self, positions: &[Vec3], indices: &[u32], world_from_object: &Mat4, material: &Material) {
+    fn add(&mut self, mesh: &Mesh, world_from_object: &Mat4, material: &Material, roles: Roles) {
+        let Mesh { positions, indices, .. } = mesh;
         let world_from_object = world_from_object.as_dmat4();
         let mirrored = world_from_object.determinant() < 0.0;
         let placed = |i: u32| {
@@ -125,7 +121,7 @@ impl Triangles {
             let corners = if mirrored { [a, c, b] } else { [a, b, c] };
             let extent = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
             self.extent_m = self.extent_m.max(extent);
-            self.tags.push(Tag::new(self.corners.len() as u32, material));
+            self.tags.push(Tag::new(self.corners.len() as u32, material, roles));
             self.corners.push(Corners(corners));
         }
     }

@@ -33,6 +33,8 @@ pub enum Place {
     Away,
     /// Outside of the light's cone, or beyond its range. V is 0.
     Unreached,
+    /// The surface faces the light, but its object is no receiver. V is 1.
+    Exempt,
     /// The surface faces the light, which would shine on it were nothing in the way.
     Receiver,
 }
@@ -61,12 +63,14 @@ fn shadow_ray(rays: &Rays<'_>, emitter: &Emitter, seen: &Seen, square: Option<DV
     Ray { origin_world, way: to.way, from_m: 0.0, to_m: to.distance_m - rays.offset_m() }
 }
 
-fn place_of(emitter: &Emitter, seen: &Option<Seen>) -> Place {
+fn place_of(rays: &Rays<'_>, emitter: &Emitter, seen: &Option<Seen>) -> Place {
     let Some(seen) = seen else { return Place::Nothing };
     if !emitter.shines_on(seen.p_world) {
         Place::Unreached
     } else if seen.normal_world.as_dvec3().dot(emitter.center(seen.p_world).way) <= 0.0 {
         Place::Away
+    } else if rays.is_exempt(seen.slot) {
+        Place::Exempt
     } else {
         Place::Receiver
     }
@@ -74,7 +78,7 @@ fn place_of(emitter: &Emitter, seen: &Option<Seen>) -> Place {
 
 /// What V is where no ray is needed.
 fn settled(place: Place) -> Vec3 {
-    if place == Place::Nothing { Vec3::ONE } else { Vec3::ZERO }
+    if matches!(place, Place::Nothing | Place::Exempt) { Vec3::ONE } else { Vec3::ZERO }
 }
 
 impl Visibility {
@@ -102,7 +106,7 @@ impl Visibility {
         let emitter = Emitter::new(light);
         let size = surfaces.size;
         let at = |p: UVec2| (p.y * size.x + p.x) as usize;
-        let place: Vec<Place> = surfaces.seen.iter().map(|seen| place_of(&emitter, seen)).collect();
+        let place: Vec<Place> = surfaces.seen.iter().map(|seen| place_of(rays, &emitter, seen)).collect();
         let receivers = place.iter().filter(|place| **place == Place::Receiver).count() as u64;
 
         let (v, samples) = if emitter.is_point() {

@@ -67,7 +67,7 @@ fn walk(
 #[derive(Debug)]
 pub struct Nearest {
     /// Do rays of sight look? They pass blended surfaces and the backs of single-sided ones; light passes neither, but
-    /// for what a surface lets through.
+    /// for what a surface lets through and what is no blocker.
     pub sight: bool,
     /// One for each ray.
     pub found: [Option<Found>; LANES],
@@ -92,7 +92,7 @@ fn find_nearest_by(
             let corners = &rays.triangles.corners[slot].0;
             for lane in lanes(hit_triangle(packet, corners, front_only, mask)) {
                 let hit = packet.hit_at(corners, lane);
-                if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v) != Vec3::ZERO {
+                if tag.is_pierceable() && rays.pierced(tag, hit.u, hit.v, nearest.sight) != Vec3::ZERO {
                     continue;
                 }
                 packet.end_at(lane, hit.t);
@@ -125,7 +125,7 @@ fn pass_light_by(
             }
             for lane in lanes(hits) {
                 let hit = packet.hit_at(&rays.triangles.corners[slot].0, lane);
-                light[lane] *= rays.pierced(tag, hit.u, hit.v);
+                light[lane] *= rays.pierced(tag, hit.u, hit.v, false);
                 if light[lane] == Vec3::ZERO {
                     packet.active &= !(1 << lane);
                 }

@@ -26,7 +26,7 @@ fn every_ray_finds_what_trying_all_triangles_finds() {
             for (i, slow) in slow.iter().enumerate() {
                 // The brute force says nothing of cones but that V is 0 there.
                 let fast = match fast.place[i] {
-                    Place::Nothing | Place::Away => None,
+                    Place::Nothing | Place::Away | Place::Exempt => None,
                     Place::Unreached => Some(false),
                     Place::Receiver => Some(fast.v[i].x == 1.0),
                 };

@@ -4,8 +4,8 @@ mod common;
 
 use common::{looking_down, scene, sheet, truth};
 use glam::{Affine2, Mat4, UVec2, Vec3, Vec4};
-use umbrage_core::{Camera, Light, LightKind};
-use umbrage_scene::{AlphaMode, Image, Material, Scene, TextureRef, Wrap};
+use umbrage_core::{Camera, Light, LightKind, LightShape};
+use umbrage_scene::{AlphaMode, Image, Instance, Material, Mesh, Roles, Scene, TextureRef, Wrap};
 use umbrage_truth::{Place, Rays, Surfaces, silent};
 
 fn lamp() -> Light {
@@ -125,4 +125,51 @@ fn a_scene_without_triangles_is_empty_and_not_a_failure() {
         truth(&nothing, &looking_down(Vec3::ZERO, 1.0, 1.0), &lamp(), UVec2::new(5, 3), 4);
     assert!(surfaces.seen.iter().all(Option::is_none));
     assert!(found.v.iter().all(|v| *v == Vec3::ONE) && found.rays == 0);
+}
+
+#[test]
+fn light_passes_what_is_no_blocker_and_sight_does_not() {
+    let mut scene = over_ground(Material::default(), Vec::new());
+    assert_eq!(v_at(&scene, 0.1, 0.1), Vec3::ZERO);
+    scene.instances[0].roles = Roles { blocker: false, receiver: true };
+    assert_eq!(v_at(&scene, 0.1, 0.1), Vec3::ONE);
+    let above = looking_down(Vec3::new(0.1, 0.0, 0.1), 2.0, 0.001);
+    let seen = |scene: &Scene| {
+        let rays = Rays::new(scene).expect("rays");
+        let seen =
+            Surfaces::new(&rays, &above, UVec2::ONE, &silent).expect("a picture").seen[0].expect("a surface");
+        (rays.instance(seen.slot), seen.p_world.y)
+    };
+    assert_eq!(seen(&scene).0, 0, "the sheet is seen all the same");
+    // A blocker behind it blocks, whichever is met first.
+    let higher = Mesh {
+        positions: scene.meshes[0].positions.iter().map(|p| *p + Vec3::Y).collect(),
+        ..scene.meshes[0].clone()
+    };
+    let lower = Mesh {
+        positions: scene.meshes[0].positions.iter().map(|p| *p - Vec3::Y * 0.4).collect(),
+        ..scene.meshes[0].clone()
+    };
+    for other in [higher, lower] {
+        let mut both = scene.clone();
+        both.meshes.push(other);
+        both.instances.push(Instance { mesh: 2, object: 2, ..Instance::default() });
+        assert_eq!(v_at(&both, 0.1, 0.1), Vec3::ZERO);
+    }
+}
+
+#[test]
+fn what_is_no_receiver_is_lit_wherever_light_would_shine() {
+    let mut scene = over_ground(Material::default(), Vec::new());
+    scene.instances[1].roles = Roles { blocker: true, receiver: false };
+    let at = |light: &Light| {
+        let camera = looking_down(Vec3::new(0.1, 0.0, 0.1), 0.5, 0.001);
+        let found = truth(&scene, &camera, light, UVec2::ONE, 4).1;
+        (found.place[0], found.v[0], found.rays)
+    };
+    let ball = Light { shape: LightShape::Sphere { radius_m: 0.1 }, ..lamp() };
+    assert_eq!(at(&lamp()), (Place::Exempt, Vec3::ONE, 0));
+    assert_eq!(at(&ball), (Place::Exempt, Vec3::ONE, 0));
+    assert_eq!(at(&Light { range_m: Some(2.0), ..lamp() }), (Place::Unreached, Vec3::ZERO, 0));
+    assert_eq!(at(&lamp().aimed(Vec3::NEG_Y, Vec3::ZERO)), (Place::Away, Vec3::ZERO, 0));
 }

@@ -4,11 +4,16 @@ mod adaptive;
 mod convex;
 mod directional;
 mod lispsm;
+mod mask;
+mod mask_options;
 mod perspective;
 mod point;
 mod seen;
 mod spot;
 mod window;
+
+pub use mask::{MaskView, Region, fit_mask};
+pub use mask_options::{Frame, MaskError, MaskOptions, Ratios};
 
 use crate::bounds::Aabb;
 use crate::camera::Camera;

@@ -48,7 +48,12 @@ pub fn over_floor(
     let floor = scene.materials.len();
     scene.materials.push(Material::default());
     scene.meshes.push(sheet(Vec3::ZERO, Vec3::X * 4.0, Vec3::NEG_Z * 4.0, floor));
-    let place = |mesh, world_from_object| Instance { name: String::new(), mesh, world_from_object };
+    let place = |mesh, world_from_object| Instance {
+        mesh,
+        world_from_object,
+        object: mesh as u32,
+        ..Instance::default()
+    };
     scene.instances = placed.iter().map(|(mesh, at)| place(*mesh, *at)).collect();
     scene.instances.push(place(scene.meshes.len() - 1, Mat4::IDENTITY));
     let camera = Camera::look_at(Vec3::new(0.0, 6.0, 6.0), Vec3::ZERO, 0.8, 0.1, 50.0);

@@ -166,7 +166,9 @@ impl Stage {
     }
 
     fn instance(&mut self, name: &str, mesh: usize, world_from_object: Mat4) {
-        self.scene.instances.push(Instance { name: name.to_owned(), mesh, world_from_object });
+        let object = self.scene.instances.len() as u32;
+        let name = name.to_owned();
+        self.scene.instances.push(Instance { name, mesh, world_from_object, object, ..Instance::default() });
     }
 
     /// A shape that is drawn once, where it is.

@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::geometry::{self, Geometry};
-use super::{cameras, images, instancing, lights, materials, morph, nodes, skin};
+use super::{cameras, images, instancing, lights, materials, morph, nodes, roles, skin};
 use crate::tangents::{self, pick};
 use crate::{Instance, Material, Mesh, Scene};
 use glam::{Mat4, Vec3};
@@ -20,6 +20,7 @@ pub(super) fn scene(document: &Document<'_>, warnings: &mut Vec<String>) -> Resu
         world: &tree.world,
         shared: HashMap::new(),
         scene: Scene::default(),
+        objects: 0,
         tangent_sets: Vec::new(),
     };
     for &node in &tree.drawn {
@@ -70,6 +71,8 @@ struct Builder<'a> {
     /// Meshes that do not depend on the node, by mesh and primitive; `None` where there is nothing to draw.
     shared: HashMap<(usize, usize), Option<usize>>,
     scene: Scene,
+    /// Objects so far.
+    objects: u32,
     /// For each mesh, the texture coordinates along which it still needs tangents.
     tangent_sets: Vec<Option<u32>>,
 }
@@ -87,17 +90,23 @@ impl Builder<'_> {
             None => instancing::places(self.document, node)?,
         };
         let name = json.name.clone().unwrap_or_default();
+        let roles = roles::read(self.document, node, warnings);
+        let places = places.as_deref().unwrap_or(&[Mat4::IDENTITY]);
+        // Each place is an object, whatever the number of its primitives.
+        let first = self.objects;
+        self.objects = first.saturating_add(places.len() as u32);
         for primitive in 0..self.document.root.meshes[mesh].primitives.len() {
             let (index, baked) = self.primitive(node, mesh, primitive, joints.as_deref(), warnings)?;
             let Some(index) = index else { continue };
             // What a skin has moved is in the world already.
             let world = if baked { Mat4::IDENTITY } else { self.world[node] };
-            let places = places.as_deref().unwrap_or(&[Mat4::IDENTITY]);
             self.document.charge(places.len(), size_of::<Instance>() + name.len())?;
-            self.scene.instances.extend(places.iter().map(|place| Instance {
+            self.scene.instances.extend((first..).zip(places).map(|(object, place)| Instance {
                 name: name.clone(),
                 mesh: index,
                 world_from_object: world * *place,
+                roles,
+                object,
             }));
         }
         Ok(())

@@ -21,6 +21,7 @@ mod meshopt;
 mod morph;
 mod nodes;
 mod references;
+mod roles;
 mod sampler;
 mod skin;
 mod uri;

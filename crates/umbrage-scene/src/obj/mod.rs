@@ -14,7 +14,6 @@ pub(crate) use polygons::newell;
 pub(crate) use scan::{vertex, words};
 
 use crate::{Instance, Scene, SceneError};
-use glam::Mat4;
 use std::path::Path;
 
 /// More warnings than this help nobody.
@@ -59,7 +58,8 @@ pub(crate) fn load(path: &Path, bytes: &[u8]) -> Result<Scene, SceneError> {
         .map(|mesh| Instance {
             name: scene.meshes[mesh].name.clone(),
             mesh,
-            world_from_object: Mat4::IDENTITY,
+            object: mesh as u32,
+            ..Instance::default()
         })
         .collect();
     let more = scene.warnings.len().saturating_sub(MAX_WARNINGS);

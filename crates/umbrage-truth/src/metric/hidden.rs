@@ -144,7 +144,6 @@ fn is_lit_beside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Mat4;
     use umbrage_core::Light;
     use umbrage_scene::{Instance, Material, Mesh, Scene};
 
@@ -161,7 +160,7 @@ mod tests {
         let floor = quad([at(-5.0, 0.0, 5.0), at(5.0, 0.0, 5.0), at(5.0, 0.0, -5.0), at(-5.0, 0.0, -5.0)]);
         let (low, high) = (floats_m, floats_m + 1.0);
         let wall = quad([at(0.0, low, 5.0), at(0.0, high, 5.0), at(0.0, high, -5.0), at(0.0, low, -5.0)]);
-        let instance = |mesh| Instance { name: String::new(), mesh, world_from_object: Mat4::IDENTITY };
+        let instance = |mesh| Instance { mesh, object: mesh as u32, ..Instance::default() };
         let scene = Scene {
             meshes: vec![floor, wall],
             instances: vec![instance(0), instance(1)],

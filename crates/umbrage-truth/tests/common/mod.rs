@@ -4,7 +4,7 @@
 
 pub mod brute;
 
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 use umbrage_core::{Aabb, Camera, Light, Projection};
 use umbrage_scene::{Instance, Material, Mesh, Scene};
 use umbrage_truth::{Quality, Rays, Surfaces, Visibility, silent};
@@ -30,9 +30,8 @@ pub fn sheet(center: Vec3, right: Vec3, up: Vec3, material: usize) -> Mesh {
 
 /// A scene of meshes where they are, each once.
 pub fn scene(materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
-    let instances = (0..meshes.len())
-        .map(|mesh| Instance { name: String::new(), mesh, world_from_object: Mat4::IDENTITY })
-        .collect();
+    let instances =
+        (0..meshes.len()).map(|mesh| Instance { mesh, object: mesh as u32, ..Instance::default() }).collect();
     Scene { materials, meshes, instances, ..Scene::default() }
 }
 
