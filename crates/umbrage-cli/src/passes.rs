@@ -37,6 +37,7 @@ fn describe(pass: &Pass) -> serde_json::Value {
         Target::Depth => json!({ "kind": "depth" }),
         Target::Faces => json!({ "kind": "faces" }),
         Target::Stencil => json!({ "kind": "stencil" }),
+        Target::Mask { size_texel } => json!({ "kind": "mask", "size_texel": size_texel }),
         Target::Visibility => json!({ "kind": "visibility" }),
         Target::Picture => json!({ "kind": "picture" }),
     };
@@ -65,6 +66,7 @@ fn describe(pass: &Pass) -> serde_json::Value {
             StencilUse::CountsBack => "counts-back",
             StencilUse::CountsFront => "counts-front",
             StencilUse::IsZero => "is-zero",
+            StencilUse::DarkensOnce => "darkens-once",
         },
         "polygon_offset": { "constant": pass.offset.constant, "slope": json::decimal(pass.offset.slope) },
         "draws": match pass.draws {
@@ -75,6 +77,8 @@ fn describe(pass: &Pass) -> serde_json::Value {
             Draws::Edges => "edges",
             Draws::Volumes => "volumes",
             Draws::Screen => "screen",
+            Draws::Outlines => "outlines",
+            Draws::Receivers => "receivers",
         },
     })
 }

@@ -38,6 +38,13 @@ impl Frustum {
         })
     }
 
+    /// The same, as far as light goes: only its four sides count.
+    pub fn without_depth(mut self) -> Self {
+        self.planes_world[4] = Vec4::W;
+        self.planes_world[5] = Vec4::W;
+        self
+    }
+
     /// May anything of the box be inside, or of what it sweeps when each point `p` of it moves along `way(p)` without end? `way`
     /// is affine. False only when all of it is outside one plane.
     pub fn may_see_swept(&self, bounds_world: &Aabb, way: impl Fn(Vec3) -> Vec3) -> bool {

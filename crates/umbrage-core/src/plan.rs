@@ -4,6 +4,7 @@
 //! surfaces are lit is the renderer's own affair: the reference renderer draws them into a G-buffer first.
 
 use crate::DEPTH;
+use crate::technique::mask::Receivers;
 use crate::technique::volume::{Silhouette, Soften, Stencil, Volume};
 use crate::technique::{Bias, Method, Settings, Storage};
 
@@ -41,6 +42,11 @@ pub enum Target {
     Faces,
     /// The stencil of the caller's depth.
     Stencil,
+    /// One layer of the masks for each blocker.
+    Mask {
+        /// Width and height, texels.
+        size_texel: u32,
+    },
     /// The light's layer of V on the screen.
     Visibility,
     /// The caller's picture and its depth.
@@ -62,6 +68,8 @@ pub enum StencilUse {
     CountsFront,
     /// Draws only where nothing was counted.
     IsZero,
+    /// Draws only where nothing is marked, and marks what becomes wholly dark. The pass begins with 0.
+    DarkensOnce,
 }
 
 /// What is kept of all surfaces that lie behind each other in a texel.
@@ -95,6 +103,10 @@ pub enum Draws {
     Volumes,
     /// One triangle over the picture.
     Screen,
+    /// The outline of each blocker, in one colour.
+    Outlines,
+    /// What may lie in the shadow of each mask, once for each.
+    Receivers,
 }
 
 /// Which faces are left out.
@@ -210,7 +222,37 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
             passes.push(lighting);
             passes
         }
-        Method::None | Method::Mask(_) => vec![lighting],
+        Method::Mask(mask) => {
+            let outline = Pass {
+                name: "mask",
+                per_light: true,
+                target: Target::Mask { size_texel: settings.value("mask_size").unwrap_or(0.0) as u32 },
+                cull: Cull::Nothing,
+                draws: Draws::Outlines,
+                ..lighting.clone()
+            };
+            let subtract = Pass {
+                name: "subtract",
+                target: Target::Visibility,
+                stencil: StencilUse::DarkensOnce,
+                draws: Draws::Receivers,
+                ..outline.clone()
+            };
+            let mut passes = vec![outline];
+            if mask.receivers == Receivers::Subtractive {
+                let depth = Pass {
+                    name: "layZ",
+                    target: Target::Depth,
+                    color: false,
+                    draws: Draws::Depths,
+                    ..lighting.clone()
+                };
+                passes.extend([depth, subtract]);
+            }
+            passes.push(lighting);
+            passes
+        }
+        Method::None => vec![lighting],
     }
 }
 
@@ -322,6 +364,9 @@ impl std::fmt::Display for Pass {
                 "indices and draw arguments of the light's volumes; kept until light or caster moves"
                     .to_owned()
             }
+            Target::Mask { size_texel } => format!(
+                "{size_texel}x{size_texel} r8unorm, a layer for each blocker; kept until light or blocker moves"
+            ),
             Target::Stencil => "the stencil of the picture's depth".to_owned(),
             Target::Visibility => "V on the screen, r8unorm, the light's layer".to_owned(),
             Target::Picture => "the picture and its depth".to_owned(),
@@ -346,6 +391,10 @@ impl std::fmt::Display for Pass {
                 "sides of volumes, and their lids for casters that are counted behind the surface"
             }
             Draws::Screen => "one triangle over the picture",
+            Draws::Outlines => {
+                "each blocker's outline, with fewer triangles where that changes less than a fraction of a texel"
+            }
+            Draws::Receivers => "objects beyond each blocker, once for each mask",
             Draws::Surfaces => {
                 "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
             }
@@ -357,6 +406,8 @@ impl std::fmt::Display for Pass {
             (Target::Stencil, StencilUse::CountsFront) => writeln!(f, "  clear   nothing")?,
             (Target::Stencil, _) => writeln!(f, "  clear   stencil 0")?,
             (Target::Visibility, StencilUse::IsZero) => writeln!(f, "  clear   V 0")?,
+            (Target::Visibility, StencilUse::DarkensOnce) => writeln!(f, "  clear   V 1, stencil 0")?,
+            (Target::Mask { .. }, _) => writeln!(f, "  clear   0")?,
             (Target::Visibility, _) => writeln!(f, "  clear   nothing")?,
             (Target::Colors { .. }, _) => writeln!(f, "  clear   white")?,
             _ => writeln!(f, "  clear   depth {}", self.clear_depth)?,
@@ -373,7 +424,16 @@ impl std::fmt::Display for Pass {
                 write!(f, "  state   stencil only, wrapping: {counts}; depth {nearer}, {cull}")?;
             }
             (Target::Visibility, StencilUse::IsZero) => {
-                write!(f, "  state   writes 1 where the stencil is 0")?
+                write!(f, "  state   writes 1 where the stencil is 0")?;
+            }
+            (Target::Visibility, StencilUse::DarkensOnce) => {
+                write!(
+                    f,
+                    "  state   cores subtracted, marked in the stencil and drawn once; then the darkest of the fringes; depth {compare}"
+                )?;
+            }
+            (Target::Mask { .. }, _) => {
+                write!(f, "  state   one flat colour; no depth, light or clipping; {cull}")?;
             }
             (Target::Visibility, _) => write!(f, "  state   weighted mean across like depths")?,
             _ => {

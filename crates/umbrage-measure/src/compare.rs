@@ -277,11 +277,12 @@ struct Shot<'a> {
 struct Answer {
     v: Vec<Vec3>,
     views: Vec<umbrage_render::umbrage::core::fit::ShadowView>,
+    masks: Vec<umbrage_render::umbrage::core::fit::MaskView>,
 }
 
 impl Answer {
     fn reach(&self, settings: &Settings) -> Reach {
-        Reach::of(settings, &self.views)
+        Reach::of(settings, &self.views, &self.masks)
     }
 }
 
@@ -308,7 +309,11 @@ impl<'a> Shot<'a> {
                 warnings.push(warning.clone());
             }
         }
-        Ok(Answer { v: renderer.visibility_rgb()?, views: renderer.views().to_vec() })
+        Ok(Answer {
+            v: renderer.visibility_rgb()?,
+            views: renderer.views().to_vec(),
+            masks: renderer.mask_views(),
+        })
     }
 
     /// The final picture with the truth's V.

@@ -76,6 +76,7 @@ impl Cost {
         let texels_of = |(pass, map): &(Pass, u64)| match pass.target {
             Target::Faces => 0,
             Target::Stencil | Target::Visibility => pixels,
+            Target::Mask { size_texel } => u64::from(size_texel) * u64::from(size_texel),
             _ => *map,
         };
         let of_shadow = |name: &str| planned.iter().find(|(pass, _)| name.starts_with(pass.name));

@@ -1,9 +1,9 @@
 //! What a technique cannot resolve, pixel by pixel.
 
-use glam::DVec3;
+use glam::{DVec3, Mat4, UVec2};
 use umbrage_render::umbrage::core::DEPTH;
 use umbrage_render::umbrage::core::density::{Raster, texels_per_metre, texels_per_pixel};
-use umbrage_render::umbrage::core::fit::ShadowView;
+use umbrage_render::umbrage::core::fit::{MaskView, ShadowView};
 use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_truth::{LEAST_REACH_PX, Seen, Surfaces};
 
@@ -13,6 +13,8 @@ pub struct Reach {
     maps: Vec<(ShadowView, Raster)>,
     /// The filter's radius and one texel more.
     texels: f64,
+    /// Views of masks, of which several may be laid over one surface.
+    masks: Vec<(Mat4, Raster)>,
     /// Radius of a blur on the screen, pixels, or on the surface, metres.
     blur: Blur,
 }
@@ -31,22 +33,33 @@ impl Reach {
     /// whose middle a surface lies: the tile of a point light. Without a map there is nothing that a texel hides.
     pub fn new(views: &[ShadowView], size_texel: u32, filter_texel: f32) -> Self {
         let maps = views.iter().map(|view| (*view, view.raster(size_texel))).collect();
-        Self { maps, texels: f64::from(filter_texel) + 1.0, blur: Blur::Px(0.0) }
+        Self { maps, texels: f64::from(filter_texel) + 1.0, masks: Vec::new(), blur: Blur::Px(0.0) }
     }
 
     /// Of what a technique drew, whose maps are these: a blur on the screen reaches further.
-    pub fn of(settings: &Settings, views: &[ShadowView]) -> Self {
+    pub fn of(settings: &Settings, views: &[ShadowView], masks: &[MaskView]) -> Self {
         let maps = settings.fallback();
         let maps = maps.as_ref().unwrap_or(settings);
         let radius = |name: &str| 0.5 * settings.value(name).unwrap_or(0.0);
         let blur =
             if radius("soft_m") > 0.0 { Blur::Metres(radius("soft_m")) } else { Blur::Px(radius("soft_px")) };
-        Self { blur, ..Self::new(views, maps.map_size_texel(), maps.reach_texel()) }
+        let raster = |view: &MaskView| Raster::new(view.clip_from_world(), UVec2::splat(view.size_texel));
+        let masks = masks.iter().map(|view| (view.clip_from_world(), raster(view))).collect();
+        Self { blur, masks, ..Self::new(views, maps.map_size_texel(), maps.reach_texel()) }
     }
 
     /// Is there any map?
     pub fn has_map(&self) -> bool {
         !self.maps.is_empty()
+    }
+
+    /// The masks that are laid over a place.
+    fn masks_over(&self, p_world: DVec3) -> impl Iterator<Item = &Raster> {
+        let is_over = move |(clip_from_world, _): &&(Mat4, Raster)| {
+            let clip = clip_from_world.as_dmat4() * p_world.extend(1.0);
+            clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w
+        };
+        self.masks.iter().filter(is_over).map(|(_, raster)| raster)
     }
 
     fn map_of(&self, p_world: DVec3) -> Option<&Raster> {
@@ -73,10 +86,14 @@ impl Reach {
                 Blur::Metres(radius_m) => LEAST_REACH_PX.max(radius_m / surfaces.pixel_m(seen) as f32 + 1.0),
                 Blur::Px(_) => LEAST_REACH_PX,
             };
+            let of_map = |map: &Raster| {
+                // A texel is longest where a pixel has fewest of them. Exact for warped views too.
+                let density = texels_per_pixel(map, &picture, seen.p_world, seen.normal_world.as_dvec3());
+                (self.texels / density.least) as f32
+            };
+            let least_px = self.masks_over(seen.p_world).map(of_map).fold(least_px, f32::max);
             let Some(map) = self.map_of(seen.p_world) else { return least_px };
-            // A texel is longest where a pixel has fewest of them. Exact for warped views too.
-            let density = texels_per_pixel(map, &picture, seen.p_world, seen.normal_world.as_dvec3());
-            ((self.texels / density.least) as f32).max(least_px)
+            of_map(map).max(least_px)
         };
         surfaces.seen.iter().map(reach).collect()
     }

@@ -21,16 +21,20 @@ pub struct FrameBindings {
     slides: wgpu::TextureView,
     slide_sampler: wgpu::Sampler,
     given: wgpu::TextureView,
+    /// List, masks and sampler, where masks are looked up.
+    masks: Option<(wgpu::Buffer, wgpu::TextureView, wgpu::Sampler)>,
 }
 
 impl FrameBindings {
-    /// Makes buffers and samplers; uploads slides and what is given. `screen_v` is V that is found on the screen.
+    /// Makes buffers and samplers; uploads slides and what is given. `screen_v` is V that is found on the screen,
+    /// `masks` what is looked up inline.
     pub fn new(
         gpu: &Gpu,
         layouts: Layouts,
         options: &RenderOptions,
         slide_images: &[&Image],
         screen_v: Option<wgpu::TextureView>,
+        masks: Option<(wgpu::Buffer, wgpu::TextureView, wgpu::Sampler)>,
     ) -> Self {
         let uniform = |label, bytes: usize| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -70,6 +74,7 @@ impl FrameBindings {
             slides: crate::textures::slides(&gpu.device, &gpu.queue, slide_images),
             slide_sampler,
             given: screen_v.unwrap_or_else(|| crate::textures::given(&gpu.device, &gpu.queue, options)),
+            masks,
             layouts,
         }
     }
@@ -101,8 +106,15 @@ impl FrameBindings {
             wgpu::BindingResource::TextureView(nearest),
             wgpu::BindingResource::TextureView(colors),
         ];
+        let masks = self.masks.iter().flat_map(|(list, masks, sampler)| {
+            [
+                list.as_entire_binding(),
+                wgpu::BindingResource::TextureView(masks),
+                wgpu::BindingResource::Sampler(sampler),
+            ]
+        });
         let entries: Vec<_> = (0u32..)
-            .zip(entries)
+            .zip(entries.into_iter().chain(masks))
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
         device.create_bind_group(&wgpu::BindGroupDescriptor {

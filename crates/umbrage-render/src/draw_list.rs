@@ -4,13 +4,14 @@ use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
 use glam::{Mat4, Vec3, Vec4};
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use umbrage::core::fit::ShadowView;
+use umbrage::core::fit::{MaskView, Region, ShadowView};
 use umbrage::core::idle::flat_caster_is_idle;
 use umbrage::core::plan::Cull;
 use umbrage::core::technique::{Bias, Settings};
-use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
-use umbrage_scene::{Mesh, Scene, is_closed, plane_of};
+use umbrage::core::{Aabb, DEPTH, Frustum, Light, LightKind, cone_may_see};
+use umbrage_scene::{Mesh, Roles, Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
 #[derive(Clone, Debug)]
@@ -39,6 +40,9 @@ struct Item {
     cut_out: bool,
     /// Is it one that only maps can draw?
     by_map: bool,
+    /// The object that it is a part of, and what that does with light.
+    object: u32,
+    roles: Roles,
     /// The plane that it lies in, if it is flat.
     plane_world: Option<Vec4>,
 }
@@ -52,6 +56,37 @@ pub struct VolumeItem {
     pub world_from_object: Mat4,
     /// Box around it.
     pub bounds_world: Aabb,
+}
+
+/// A mesh of a blocker.
+#[derive(Clone, Copy, Debug)]
+pub struct MaskPart {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// Where it is.
+    pub world_from_object: Mat4,
+    /// Box around it.
+    pub bounds_world: Aabb,
+}
+
+/// Receivers of a mask: a mesh and consecutive instances.
+#[derive(Clone, Debug)]
+pub struct ReceiverBatch {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// Instances: first and past the last.
+    pub instances: std::ops::Range<u32>,
+}
+
+/// Is an instance flat, and nothing behind it? `boxes` are those of all instances, world space.
+pub fn is_flat_and_idle(scene: &Scene, light: &Light, number: usize, boxes: &[Aabb]) -> bool {
+    let placed = &scene.instances[number];
+    let Some(plane_object) = plane_of(&scene.meshes[placed.mesh]) else { return false };
+    let plane = placed.world_from_object.inverse().transpose() * plane_object;
+    let plane = plane / plane.truncate().length();
+    let whole = boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
+    let others = boxes.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, one)| *one);
+    plane.is_finite() && flat_caster_is_idle(light, plane, others, 1e-6 * whole.size().max_element())
 }
 
 /// All instances of a scene in drawing order.
@@ -120,7 +155,7 @@ fn shapes(scene: &Scene) -> Vec<Shape> {
 
 impl Items {
     /// Sorts a scene's instances by pipeline, material and mesh. Vertices may be moved by `reach_m`; what is moved is neither
-    /// flat nor closed for certain. `by_map`: for each mesh, whether it is one that only maps can draw.
+    /// flat nor closed for certain. `by_map`: for each instance, whether it is one that only maps can draw.
     pub fn new(
         scene: &Scene,
         geometry: &Geometry,
@@ -136,11 +171,17 @@ impl Items {
                 mesh: placed.mesh,
                 material,
                 world_from_object: placed.world_from_object,
-                variant: Variant { full: geometry.meshes[placed.mesh].full, ..materials[material].variant },
+                variant: Variant {
+                    full: geometry.meshes[placed.mesh].full,
+                    exempt: !placed.roles.receiver,
+                    ..materials[material].variant
+                },
                 bounds_world: Aabb::EMPTY,
                 closed: false,
                 cut_out: geometry.meshes[placed.mesh].uv_alpha_offset.is_some(),
-                by_map: by_map[placed.mesh],
+                by_map: by_map[instance],
+                object: placed.object,
+                roles: placed.roles,
                 plane_world: None,
             };
             item.place(placed.world_from_object, &shapes[placed.mesh], reach_m);
@@ -198,11 +239,15 @@ impl Items {
 
     /// The surfaces mixed by alpha that a view may see, far ones first.
     pub fn blended(&self, frustum: &Frustum, eye: Vec3, instances: &mut Vec<GpuInstance>) -> Vec<Batch> {
+        batches(self.blended_items(frustum, eye).into_iter().map(|item| (item, false)), instances)
+    }
+
+    fn blended_items(&self, frustum: &Frustum, eye: Vec3) -> Vec<&Item> {
         let mut seen: Vec<&Item> =
             self.items.iter().filter(|i| i.variant.blend && frustum.may_see(&i.bounds_world)).collect();
         let distance = |item: &Item| item.bounds_world.center().distance_squared(eye);
         seen.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-        batches(seen.into_iter().map(|item| (item, false)), instances)
+        seen
     }
 
     /// Box around all instances, world space.
@@ -239,7 +284,8 @@ impl Items {
             in_range && in_cone
         };
         let is_needed = move |item: &&Item| {
-            let is_caster = !item.by_map && !item.bounds_world.is_empty() && is_lit(&item.bounds_world);
+            let is_caster = item.roles.blocker && !item.by_map && !item.bounds_world.is_empty();
+            let is_caster = is_caster && is_lit(&item.bounds_world);
             is_caster && (all || !self.is_idle(light, item, tolerance_m))
         };
         self.items.iter().filter(is_needed).map(|item| VolumeItem {
@@ -247,6 +293,63 @@ impl Items {
             world_from_object: item.world_from_object,
             bounds_world: item.bounds_world,
         })
+    }
+
+    /// The objects that may throw a mask, each with its parts.
+    pub fn mask_blockers(&self, light: &Light) -> BTreeMap<u32, Vec<MaskPart>> {
+        let tolerance_m = 1e-6 * self.whole().size().max_element();
+        let mut blockers: BTreeMap<u32, (bool, Vec<MaskPart>)> = BTreeMap::new();
+        let of_kind = self.items.iter().filter(|item| item.roles.blocker && !item.by_map);
+        for item in of_kind.filter(|item| !item.bounds_world.is_empty()) {
+            let (is_needed, parts) = blockers.entry(item.object).or_default();
+            *is_needed |= !self.is_idle(light, item, tolerance_m);
+            parts.push(MaskPart {
+                mesh: item.mesh,
+                world_from_object: item.world_from_object,
+                bounds_world: item.bounds_world,
+            });
+        }
+        let needed = blockers.into_iter().filter(|(_, (is_needed, _))| *is_needed);
+        needed.map(|(object, (_, parts))| (object, parts)).collect()
+    }
+
+    /// The solid surfaces that are seen and may lie in a mask's shadow; their instances are appended to `instances`.
+    pub fn mask_receivers(
+        &self,
+        view: &MaskView,
+        owner: u32,
+        clip_from_world: Mat4,
+        instances: &mut Vec<GpuInstance>,
+    ) -> Vec<ReceiverBatch> {
+        let seen = Frustum::from_clip(clip_from_world, DEPTH);
+        let mask = Frustum::from_clip(view.clip_from_world(), DEPTH).without_depth();
+        let mut batches: Vec<ReceiverBatch> = Vec::new();
+        for item in &self.items {
+            let is_receiver = item.roles.receiver && !item.variant.blend && item.object != owner;
+            let is_beyond = item.bounds_world.corners().iter().any(|p| view.region(*p) != Region::Before);
+            if !is_receiver
+                || !is_beyond
+                || !seen.may_see(&item.bounds_world)
+                || !mask.may_see(&item.bounds_world)
+            {
+                continue;
+            }
+            let at = instances.len() as u32;
+            instances.push(GpuInstance::new(&item.world_from_object));
+            match batches.last_mut() {
+                Some(last) if last.mesh == item.mesh && last.instances.end == at => {
+                    last.instances.end = at + 1
+                }
+                _ => batches.push(ReceiverBatch { mesh: item.mesh, instances: at..at + 1 }),
+            }
+        }
+        batches
+    }
+
+    /// The objects of the instances that [`Self::solid`] and [`Self::blended`] list, in the same order.
+    pub fn objects(&self, frustum: &Frustum, eye: Vec3) -> Vec<u32> {
+        let solid = self.items.iter().filter(|i| !i.variant.blend && frustum.may_see(&i.bounds_world));
+        solid.chain(self.blended_items(frustum, eye)).map(|item| item.object).collect()
     }
 
     /// Everything that may throw a shadow in a light's view; with `all` also what can be shown to shadow nothing. `cull` is the
@@ -282,7 +385,7 @@ impl Items {
             Cull::FrontOfClosed => item.closed && !item.cut_out,
             Cull::Front | Cull::Back | Cull::Nothing | Cull::ByMaterial => false,
         };
-        let of_kind = self.items.iter().filter(|item| item.by_map || !by_map);
+        let of_kind = self.items.iter().filter(|item| item.roles.blocker && (item.by_map || !by_map));
         let seen = of_kind.filter(|item| frustum.may_see(&item.bounds_world) && is_needed(item));
         batches(seen.map(|item| (item, one_sided(item))), instances)
     }

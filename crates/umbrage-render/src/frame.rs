@@ -108,18 +108,30 @@ impl Renderer<'_> {
             pass += of_map.len() as u32;
             work.extend(of_map);
         }
+        //    And each mask that does not.
+        let stale = self.masks.as_ref().map(|masks| masks.stale(self.options.reuse)).unwrap_or_default();
+        if let Some(masks) = &mut self.masks {
+            let done = masks.record(&mut encoder, &stale, (&queries, pass));
+            pass += done.len() as u32;
+            work.extend(done);
+        }
         // 2. Surfaces, into the G-buffer.
         if let Some(gbuffer) = &self.targets.gbuffer {
             self.record_surfaces(&mut encoder, gbuffer, &queries, pass);
             work.push(self.work_of(&self.solid));
             pass += 1;
         }
-        // 3. What is counted over them.
+        // 3. What is counted over them, or taken away from them.
         if let Some(mut volumes) = self.volumes.take() {
             let (reuse, size) = (self.options.reuse, self.options.size);
             let done =
                 volumes.record(self.gpu, &mut encoder, &self.targets.depth, size, reuse, (&queries, pass));
             self.volumes = Some(volumes);
+            pass += done.len() as u32;
+            work.extend(done);
+        }
+        if let Some(masks) = &self.masks {
+            let done = masks.record_subtract(&mut encoder, &self.targets.depth, (&queries, pass));
             pass += done.len() as u32;
             work.extend(done);
         }
@@ -246,9 +258,13 @@ impl Renderer<'_> {
         let of_view =
             |view: &usize| of_map.iter().map(move |name| format!("{name} {view}")).collect::<Vec<_>>();
         let mut names: Vec<String> = drawn.iter().flat_map(of_view).collect();
+        let of_masks = self.masks.as_ref().map(|masks| masks.pass_names(&masks.stale(self.options.reuse)));
+        let [masks, subtracted] = of_masks.unwrap_or_default();
+        names.extend(masks);
         if self.targets.gbuffer.is_some() {
             names.push("surfaces".to_owned());
         }
+        names.extend(subtracted);
         names.extend(self.volumes.iter().flat_map(|volumes| volumes.pass_names(self.options.reuse)));
         names.push(match self.options.view {
             _ if self.screen.is_none() => "lit surfaces".to_owned(),
@@ -270,8 +286,9 @@ impl Renderer<'_> {
     ) {
         let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
         let target = (gbuffer, None, clear);
+        let objects = self.targets.objects.as_ref();
         let depth = depth(&self.targets.depth, wgpu::LoadOp::Clear(DEPTH.clear()));
-        let mut recorded = mesh_pass(encoder, "surfaces", target, depth, queries.stamps(pass));
+        let mut recorded = mesh_pass(encoder, "surfaces", target, objects, depth, queries.stamps(pass));
         queries.count(&mut recorded, pass, |recorded| {
             self.draw_meshes(recorded, &self.solid, MeshTarget::Gbuffer);
         });
@@ -285,7 +302,7 @@ impl Renderer<'_> {
             None => (output, None, clear),
         };
         let depth = depth(self.targets.forward_depth(), wgpu::LoadOp::Clear(DEPTH.clear()));
-        let mut recorded = mesh_pass(encoder, "lit surfaces", target, depth, queries.stamps(pass));
+        let mut recorded = mesh_pass(encoder, "lit surfaces", target, None, depth, queries.stamps(pass));
         let target = MeshTarget::Forward { samples: self.options.samples };
         queries.count(&mut recorded, pass, |recorded| self.draw_meshes(recorded, &self.solid, target));
     }
@@ -329,7 +346,7 @@ impl Renderer<'_> {
             None => (output, None, wgpu::LoadOp::Load),
         };
         let depth = depth(self.targets.forward_depth(), wgpu::LoadOp::Load);
-        let mut recorded = mesh_pass(encoder, "blended", target, depth, queries.stamps(pass));
+        let mut recorded = mesh_pass(encoder, "blended", target, None, depth, queries.stamps(pass));
         let target = MeshTarget::Forward { samples: self.options.samples };
         queries.count(&mut recorded, pass, |recorded| self.draw_meshes(recorded, &self.blended, target));
     }
@@ -339,6 +356,7 @@ impl Renderer<'_> {
         recorded.set_bind_group(0, frame_group, &[]);
         recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);
         recorded.set_vertex_buffer(1, self.instances.buffer.slice(..));
+        recorded.set_vertex_buffer(3, self.objects.buffer.slice(..));
         for batch in batches {
             let mesh = &self.geometry.meshes[batch.mesh];
             let Some(pipeline) = self.mesh_pipelines.get(target, batch.variant) else { continue };
@@ -352,22 +370,25 @@ impl Renderer<'_> {
     }
 }
 
-/// Begins a pass that draws meshes: target, what it is resolved to, and how it begins.
+/// Begins a pass that draws meshes: target, what it is resolved to, and how it begins; with it, what keeps each pixel's object.
 fn mesh_pass<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     label: &str,
     (view, resolve_target, load): (&wgpu::TextureView, Option<&wgpu::TextureView>, wgpu::LoadOp<wgpu::Color>),
+    objects: Option<&wgpu::TextureView>,
     depth: wgpu::RenderPassDepthStencilAttachment<'_>,
     timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'a> {
+    let attachment = |view, resolve_target, load| {
+        let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+        Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops })
+    };
+    let nothing = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+    let attachments =
+        [attachment(view, resolve_target, load), attachment(objects.unwrap_or(view), None, nothing)];
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        })],
+        color_attachments: &attachments[..if objects.is_some() { 2 } else { 1 }],
         depth_stencil_attachment: Some(depth),
         timestamp_writes,
         occlusion_query_set: None,

@@ -24,6 +24,8 @@ shader_constants! {
     // Flags of a surface: answers by Lambert and Blinn; shows its base colour without light.
     BLINN = 1;
     UNLIT = 2;
+    // It receives no shadow.
+    EXEMPT = 4;
 }
 
 /// Mirrors `Frame` of `wgsl/frame.wgsl`.
@@ -60,7 +62,7 @@ pub struct GpuLight {
     pub near_m: f32,
     pub far_m: f32,
     pub places: u32,
-    pub pad: u32,
+    pub masks: u32,
 }
 
 /// Mirrors `Material` of `wgsl/mesh.wgsl`.
@@ -152,7 +154,7 @@ mod tests {
                     near_m,
                     far_m,
                     places,
-                    pad
+                    masks
                 ),
             ),
             (

@@ -20,6 +20,8 @@ pub struct Variant {
     pub mirrored: bool,
     /// Texels may be missing.
     pub cut_out: bool,
+    /// Receives no shadow; the instance's.
+    pub exempt: bool,
     /// Base colour, metallic-roughness, normal, emissive.
     pub textures: [bool; 4],
 }
@@ -186,6 +188,7 @@ pub fn make(
                 double_sided: material.double_sided,
                 mirrored: false,
                 cut_out: matches!(material.alpha, AlphaMode::Mask { .. }),
+                exempt: false,
                 textures: bound.map(|t| t.is_some()),
             },
         }

@@ -102,6 +102,9 @@ impl Renderer<'_> {
             return refused("a position is not finite; check the pose".into());
         }
         self.geometry.repose(&self.gpu.queue, index, mesh);
+        if let Some(masks) = &mut self.masks {
+            masks.reshape(index, mesh);
+        }
         if let Some(volumes) = &mut self.volumes {
             volumes.reshape(&self.gpu.device, index, mesh);
         }

@@ -1,6 +1,7 @@
 //! The renderer's own pipelines.
 
 use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
+use crate::masks::MOST_MASKS;
 use crate::materials::Variant;
 use crate::options::View;
 use crate::shaders::{self, MOST_UNIFORM_VIEWS, ShaderNeeds};
@@ -8,9 +9,12 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use umbrage::CasterStreams;
 use umbrage::core::layout::GpuView;
+use umbrage::core::layout_mask::GpuMask;
 
 /// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
 pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// Each pixel's object, where masks have to know it.
+pub const OBJECT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// The picture's depth, where nothing is counted over it.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// The picture.
@@ -46,6 +50,8 @@ pub struct Layouts {
     pub gbuffer: wgpu::BindGroupLayout,
     /// Are maps colour targets?
     pub color_maps: bool,
+    /// Is each pixel's object kept?
+    pub objects: bool,
 }
 
 fn uniform(bytes: usize) -> wgpu::BindingType {
@@ -64,8 +70,9 @@ fn texture(
 }
 
 impl Layouts {
-    /// Makes the layouts, for maps that are colour targets or depth textures, and so many views.
-    pub fn new(device: &wgpu::Device, color_maps: bool, views: usize) -> Self {
+    /// Makes the layouts, for maps that are colour targets or depth textures, and so many views; with `objects` masks are looked up,
+    /// and each pixel's object is kept.
+    pub fn new(device: &wgpu::Device, color_maps: bool, views: usize, objects: bool) -> Self {
         let group = |label, visibility, types: &[wgpu::BindingType]| {
             let entries: Vec<_> = (0u32..)
                 .zip(types)
@@ -83,8 +90,15 @@ impl Layouts {
             TextureSampleType::Depth
         };
         let maps = texture(kept, TextureViewDimension::D2Array);
+        let masks = [
+            uniform(size_of::<GpuMask>() * MOST_MASKS),
+            texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
+            wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
+        ];
+        let masks = if objects { &masks[..] } else { &[] };
         Self {
             color_maps,
+            objects,
             frame: group(
                 "frame",
                 ShaderStages::VERTEX_FRAGMENT,
@@ -108,7 +122,11 @@ impl Layouts {
                     wgpu::BindingType::Sampler(SamplerBindingType::NonFiltering),
                     maps,
                     texture(TextureSampleType::Float { filterable: false }, TextureViewDimension::D2Array),
-                ],
+                ]
+                .iter()
+                .chain(masks)
+                .copied()
+                .collect::<Vec<_>>(),
             ),
             material: crate::materials::layout(device),
             gbuffer: group(
@@ -117,7 +135,8 @@ impl Layouts {
                 &[
                     texture(TextureSampleType::Uint, TextureViewDimension::D2),
                     texture(TextureSampleType::Depth, TextureViewDimension::D2),
-                ],
+                    texture(TextureSampleType::Uint, TextureViewDimension::D2),
+                ][..if objects { 3 } else { 2 }],
             ),
         }
     }
@@ -139,6 +158,7 @@ pub enum MeshTarget {
 #[derive(Debug)]
 pub struct MeshPipelines {
     depth: wgpu::TextureFormat,
+    objects: bool,
     shader: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     made: HashMap<(MeshTarget, Variant), wgpu::RenderPipeline>,
@@ -148,6 +168,11 @@ const NORMALS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 12,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![4 => Float32x3],
+};
+const OBJECTS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 4,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![8 => Uint32],
 };
 const FULL: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<GpuFullVertex>() as u64,
@@ -172,7 +197,7 @@ impl MeshPipelines {
             bind_group_layouts: &[Some(&layouts.frame), Some(&layouts.material)],
             immediate_size: 0,
         });
-        Self { depth, shader, layout, made: HashMap::new() }
+        Self { depth, objects: layouts.objects, shader, layout, made: HashMap::new() }
     }
 
     /// Makes the pipelines of these variants, so that a frame finds them.
@@ -203,6 +228,7 @@ impl MeshPipelines {
             ("HAS_EMISSIVE_TEXTURE", variant.textures[3]),
             ("IS_CUT_OUT", variant.cut_out),
             ("IS_DOUBLE_SIDED", variant.double_sided),
+            ("IS_EXEMPT", variant.exempt),
         ]
         .map(|(name, on)| (name, f64::from(u8::from(on))))
         .to_vec();
@@ -223,7 +249,18 @@ impl MeshPipelines {
             Some(CasterStreams::POSITIONS),
             Some(CasterStreams::INSTANCES),
             Some(if variant.full { FULL } else { NORMALS }),
+            Some(OBJECTS),
         ];
+        let targets = [
+            Some(wgpu::ColorTargetState {
+                format,
+                blend: variant.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
+                write_mask,
+            }),
+            Some(OBJECT.into()),
+        ];
+        let targets =
+            if self.objects && target == MeshTarget::Gbuffer { &targets[..] } else { &targets[..1] };
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(entry_point),
             layout: Some(&self.layout),
@@ -231,7 +268,7 @@ impl MeshPipelines {
                 module: &self.shader,
                 entry_point: Some(if variant.full { "vs_full" } else { "vs_plain" }),
                 compilation_options: compilation_options.clone(),
-                buffers: &buffers,
+                buffers: if self.objects { &buffers } else { &buffers[..3] },
             },
             primitive: wgpu::PrimitiveState {
                 front_face: if variant.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
@@ -250,11 +287,7 @@ impl MeshPipelines {
                 module: &self.shader,
                 entry_point: Some(entry_point),
                 compilation_options,
-                targets: &[Some(wgpu::ColorTargetState {
-                    format,
-                    blend: variant.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                    write_mask,
-                })],
+                targets,
             }),
             multiview_mask: None,
             cache: None,

@@ -3,11 +3,12 @@
 use crate::bindings::FrameBindings;
 use crate::draw_list::{Batch, Items, Work};
 use crate::frame::Ages;
-use crate::geometry::{Geometry, caster_cutoff};
+use crate::geometry::Geometry;
 use crate::gpu::Gpu;
-use crate::layout::{GpuFrame, MAX_LIGHTS};
+use crate::layout::{GpuFrame, GpuLight, MAX_LIGHTS};
 use crate::lights::{Lights, eye_of};
 use crate::maps::{Casting, Growing, MapMaker, MapSet};
+use crate::masks::{Masks, has_holes, unmaskable};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::options::{RenderOptions, View};
@@ -24,12 +25,13 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use umbrage::caster::NO_DEFORM;
-use umbrage::core::fit::ShadowView;
+use umbrage::core::fit::{MaskView, ShadowView};
 use umbrage::core::plan::{Draws, plan};
+use umbrage::core::technique::mask::Receivers;
 use umbrage::core::technique::{Combination, DEFAULT, Method, NO_SHADOW, Settings, Storage};
 use umbrage::core::{Camera, DEPTH, Frustum, Light, LightKind, LightShape};
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentPipelines, choose_format};
-use umbrage_scene::{Image, Instance, Mesh, Reflectance, Scene, SceneLight};
+use umbrage_scene::{Image, Instance, Reflectance, Scene, SceneLight};
 
 /// A scene made ready for one GPU.
 #[derive(Debug)]
@@ -42,6 +44,8 @@ pub struct Renderer<'a> {
     pub(crate) material_of_mesh: Arc<Vec<usize>>,
     pub(crate) maker: Arc<MapMaker>,
     pub(crate) volumes: Option<Volumes>,
+    pub(crate) masks: Option<Masks>,
+    pub(crate) objects: Growing,
     /// One set of maps, or two that a thread and the frames exchange.
     pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
     pub(crate) schedule: MapSchedule,
@@ -89,21 +93,23 @@ impl<'a> Renderer<'a> {
         check_samples(gpu, options.samples)?;
         let emits = scene.meshes.iter().any(|mesh| scene.materials[mesh.material].emissive != Vec3::ZERO);
         let lit_at_once = matches!(options.view, View::Final | View::Light) && (options.samples > 1 || emits);
-        let on_screen = matches!(options.settings.method, Method::Volume(_));
+        let on_screen = is_on_screen(&options.settings);
+        let looks_up_masks = matches!(options.settings.method, Method::Mask(_)) && !on_screen;
         let depth = if on_screen { umbrage::volume::choose_count_format(&gpu.device) } else { DEPTH_FORMAT };
-        let target_needs = TargetNeeds { gbuffer: on_screen || !lit_at_once, lit_at_once, depth };
+        let target_needs =
+            TargetNeeds { gbuffer: on_screen || !lit_at_once, lit_at_once, objects: looks_up_masks, depth };
         let targets = Targets::new(&gpu.device, &options, &target_needs)?;
 
         check_given(scene, &options)?;
         options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
         options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
-        let by_map = by_map(scene, &options);
+        let (by_map, why) = by_map(scene, &options);
         let map_settings = map_settings(&options.settings, &by_map)?;
         let format = settled_format(gpu, &options, &map_settings)?;
         let most_views = most_views(scene, &map_settings);
         let color_maps = map_settings.combination().is_some() && format.storage.is_color();
-        let layouts = Layouts::new(&gpu.device, color_maps, most_views);
+        let layouts = Layouts::new(&gpu.device, color_maps, most_views, looks_up_masks);
         let geometry = Arc::new(Geometry::new(&gpu.device, scene));
         let textures = Textures::new(&gpu.device, &gpu.queue, scene);
         let caster_layout = CasterPipelines::cut_out_layout(&gpu.device);
@@ -135,11 +141,21 @@ impl<'a> Renderer<'a> {
         let mut set = MapSet::new(&gpu.device, most_views);
         maker.refresh(&mut set, &world)?;
 
+        let masks = Masks::new(
+            gpu,
+            scene,
+            &options,
+            &caster_layout,
+            depth,
+            set.lights.lights.len(),
+            &geometry,
+            &maker.materials,
+        )?;
         let mut volumes = Volumes::new(
             gpu,
             scene,
             &options.settings,
-            &by_map,
+            &by_mesh(scene, &by_map),
             depth,
             options.size,
             set.lights.lights.len(),
@@ -153,9 +169,11 @@ impl<'a> Renderer<'a> {
             (!lit_at_once).then(|| screen_pipeline(&gpu.device, &layouts, &needs, options.view, depth));
         let slide_images: Vec<&Image> = set.lights.slides.iter().map(|i| &scene.images[*i]).collect();
         let gbuffer_group = gbuffer_group(gpu, &layouts, &targets);
-        let v = volumes.as_ref().map(|volumes| volumes.v().array().clone());
-        let bindings = FrameBindings::new(gpu, layouts, &options, &slide_images, v);
-        let mut lasting = fallback_warnings(scene, &options, &by_map);
+        let of_masks = masks.as_ref().and_then(Masks::v);
+        let v = volumes.as_ref().map(Volumes::v).or(of_masks).map(|v| v.array().clone());
+        let looked_up = masks.as_ref().filter(|_| looks_up_masks).map(Masks::bindings);
+        let bindings = FrameBindings::new(gpu, layouts, &options, &slide_images, v, looked_up);
+        let mut lasting = fallback_warnings(scene, &options, &by_map, why);
         if options.samples > 1 && !lit_at_once {
             let id = options.view.id();
             lasting
@@ -170,6 +188,8 @@ impl<'a> Renderer<'a> {
             material_of_mesh: Arc::clone(&maker.material_of_mesh),
             maker: Arc::new(maker),
             volumes,
+            masks,
+            objects: Growing::new(&gpu.device, "objects", wgpu::BufferUsages::VERTEX, 0),
             sets: vec![Arc::new(Mutex::new(set))],
             schedule: MapSchedule::default(),
             thread: None,
@@ -229,7 +249,8 @@ impl<'a> Renderer<'a> {
         if matches!(self.options.view, View::Final | View::Light) {
             self.mesh_pipelines.prepare(&gpu.device, forward, self.blended.iter().map(|b| b.variant));
         }
-        let lights = set.lights.relit(&world.lights, self.exposure);
+        let mut lights = set.lights.relit(&world.lights, self.exposure);
+        let of_masks = self.tell_masks(&world, &frustum, &eye, &mut lights);
         let frame = eye.frame(&self.options, lights.len(), self.exposure, world.time_s);
         self.bindings.write(&gpu.queue, &frame, &lights);
         let group = match self.groups[index].take() {
@@ -242,12 +263,32 @@ impl<'a> Renderer<'a> {
         self.views.clone_from(&set.lights.views);
         self.views_of_light.clone_from(&set.lights.views_of_light);
         self.warnings = set.lights.warnings.iter().chain(&self.lasting).cloned().collect();
+        self.warnings.extend(of_masks);
         if let Some(volumes) = &mut self.volumes {
             let (size, all) = (self.options.size, self.options.all_casters);
             self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
         }
         self.told = Some(now);
         Ok(())
+    }
+
+    /// Fits masks to the world, and says which are each light's.
+    fn tell_masks(
+        &mut self,
+        world: &World,
+        frustum: &Frustum,
+        eye: &Eye,
+        lights: &mut [GpuLight],
+    ) -> Vec<String> {
+        let Some(masks) = &mut self.masks else { return Vec::new() };
+        let objects = world.items.objects(frustum, eye.position);
+        self.objects.write(&self.gpu.device, &self.gpu.queue, bytemuck::cast_slice(&objects));
+        let warnings = masks.tell(self.gpu, world, eye.clip_from_world);
+        for (index, light) in lights.iter_mut().enumerate() {
+            let range = masks.of_light(index);
+            light.masks = range.start as u32 | ((range.len() as u32) << 16);
+        }
+        warnings
     }
 
     /// Memory of all shadow maps, bytes: that of all lights, and what is drawn on the way to them. It grows with the
@@ -257,7 +298,8 @@ impl<'a> Renderer<'a> {
         let sets: u64 = self.sets.iter().map(|set| locked(set).memory_bytes()).sum();
         let shadowed = !self.views.is_empty();
         let volumes = self.volumes.as_ref().map_or(0, Volumes::memory_bytes);
-        volumes + sets + peeled.filter(|_| shadowed).map_or(0, |peeled| peeled.peel.memory_bytes())
+        let masks = self.masks.as_ref().map_or(0, Masks::memory_bytes);
+        masks + volumes + sets + peeled.filter(|_| shadowed).map_or(0, |peeled| peeled.peel.memory_bytes())
     }
 
     /// Memory of each light's maps, bytes; 0 for lights without. Twice as much while a thread draws them.
@@ -287,6 +329,11 @@ impl<'a> Renderer<'a> {
         &self.warnings
     }
 
+    /// The views of all masks, light by light; empty for techniques without.
+    pub fn mask_views(&self) -> Vec<MaskView> {
+        self.masks.iter().flat_map(Masks::views).copied().collect()
+    }
+
     /// What each light sees of its casters' edges, after a frame; nothing for techniques without volumes. Waits for the GPU.
     ///
     /// # Errors
@@ -301,12 +348,39 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// For each mesh: can only a map draw its shadow? Families without maps know no holes, and nothing of what a function moves.
-fn by_map(scene: &Scene, options: &RenderOptions) -> Vec<bool> {
-    let is_family_of_its_own = options.settings.fallback().is_some();
-    let has_holes = |mesh: &Mesh| caster_cutoff(&scene.materials[mesh.material]).is_some();
-    let is_by_map = |mesh: &Mesh| is_family_of_its_own && (options.deform.is_some() || has_holes(mesh));
-    scene.meshes.iter().map(is_by_map).collect()
+/// Is V found on the screen before surfaces are lit?
+fn is_on_screen(settings: &Settings) -> bool {
+    match settings.method {
+        Method::Volume(_) => true,
+        Method::Mask(mask) => mask.receivers == Receivers::Subtractive,
+        Method::None | Method::Map(_) => false,
+    }
+}
+
+/// For each instance: can only a map draw its shadow? And why. Volumes know no holes, and nothing of what a function moves;
+/// masks nothing of what a light is inside of.
+fn by_map(scene: &Scene, options: &RenderOptions) -> (Vec<bool>, Option<String>) {
+    let is_volume = matches!(options.settings.method, Method::Volume(_));
+    if !is_volume {
+        return unmaskable(scene, &options.settings);
+    }
+    let is_by_map =
+        |placed: &Instance| options.deform.is_some() || has_holes(scene, &scene.meshes[placed.mesh]);
+    let by_map: Vec<bool> = scene.instances.iter().map(is_by_map).collect();
+    let why = if options.deform.is_some() {
+        "a function moves their vertices"
+    } else {
+        "textures cut holes into them"
+    };
+    (by_map, Some(why.to_owned()))
+}
+
+/// For each mesh: does any of its instances need a map?
+fn by_mesh(scene: &Scene, by_map: &[bool]) -> Vec<bool> {
+    let mut by_mesh = vec![false; scene.meshes.len()];
+    let placed = scene.instances.iter().zip(by_map);
+    placed.for_each(|(placed, by_map)| by_mesh[placed.mesh] |= by_map);
+    by_mesh
 }
 
 /// What maps are drawn with: the technique itself, or what takes over for casters that it cannot draw; nothing where there are none.
@@ -319,32 +393,26 @@ fn map_settings(settings: &Settings, by_map: &[bool]) -> Result<Settings, Render
 }
 
 /// Which casters a map draws though the technique is none.
-fn fallback_warnings(scene: &Scene, options: &RenderOptions, by_map: &[bool]) -> Vec<String> {
+fn fallback_warnings(
+    scene: &Scene,
+    options: &RenderOptions,
+    by_map: &[bool],
+    why: Option<String>,
+) -> Vec<String> {
     const NAMED: usize = 8;
-    let names: Vec<String> = scene
-        .meshes
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| by_map[*index])
-        .map(
-            |(index, mesh)| {
-                if mesh.name.is_empty() { format!("mesh {index}") } else { format!("`{}`", mesh.name) }
-            },
-        )
-        .collect();
-    if names.is_empty() {
-        return Vec::new();
-    }
-    let (id, family) = (options.settings.technique.id, options.settings.method.family().id());
-    let why = if options.deform.is_some() {
-        "a function moves their vertices"
-    } else {
-        "textures cut holes into them"
+    let name = |number: usize| {
+        let placed = &scene.instances[number];
+        let name = if placed.name.is_empty() { &scene.meshes[placed.mesh].name } else { &placed.name };
+        if name.is_empty() { format!("instance {number}") } else { format!("`{name}`") }
     };
+    let mut names: Vec<String> = (0..by_map.len()).filter(|number| by_map[*number]).map(name).collect();
+    names.dedup();
+    let Some(why) = why.filter(|_| !names.is_empty()) else { return Vec::new() };
+    let (id, family) = (options.settings.technique.id, options.settings.method.family().id());
     let more = if names.len() > NAMED { format!(" and {} more", names.len() - NAMED) } else { String::new() };
     let named = names[..names.len().min(NAMED)].join(", ");
     vec![format!(
-        "`{id}`: a {family} cannot be made of {named}{more}, because {why}; their shadows come from a `{DEFAULT}` map (set its map_size)"
+        "`{id}`: no {family} is made of {named}{more}: {why}; their shadows come from a `{DEFAULT}` map (set its map_size)"
     )]
 }
 
@@ -452,7 +520,9 @@ fn shader_needs(
         // `auto` is read as what it was settled on.
         combination: settings.combination().map(|c| Combination { storage, ..c }),
         given: options.given.is_some(),
-        screen: matches!(options.settings.method, Method::Volume(_)),
+        screen: is_on_screen(&options.settings),
+        masks: matches!(options.settings.method, Method::Mask(_)) && !is_on_screen(&options.settings),
+        exempt: scene.instances.iter().any(|placed| !placed.roles.receiver),
         metallic_roughness: used().any(|r| !is_blinn(r)),
         blinn: used().any(is_blinn),
         placed: scene.lights.iter().any(|l| l.light.kind != LightKind::Directional),
@@ -515,13 +585,18 @@ fn automatic_exposure(scene: &Scene) -> f32 {
 /// Group 1 of the screen pipelines, where there is a G-buffer.
 fn gbuffer_group(gpu: &Gpu, layouts: &Layouts, targets: &Targets) -> Option<wgpu::BindGroup> {
     let (gbuffer, depth) = (targets.gbuffer.as_ref()?, targets.depth_only.as_ref()?);
+    let views = [Some(gbuffer), Some(depth), targets.objects.as_ref()].into_iter().flatten();
+    let entries: Vec<_> = (0u32..)
+        .zip(views)
+        .map(|(binding, view)| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        })
+        .collect();
     Some(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("gbuffer"),
         layout: &layouts.gbuffer,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(gbuffer) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(depth) },
-        ],
+        entries: &entries,
     }))
 }
 

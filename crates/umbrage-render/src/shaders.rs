@@ -2,6 +2,7 @@
 
 use crate::density::EDGE_ON_COS;
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
+use crate::masks::MOST_MASKS;
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
 use umbrage::core::DEPTH;
@@ -36,6 +37,10 @@ pub struct ShaderNeeds {
     pub slide: bool,
     /// How many lights there are.
     pub lights: usize,
+    /// Are masks looked up while surfaces are lit?
+    pub masks: bool,
+    /// Does any surface receive no shadow?
+    pub exempt: bool,
     /// Is any light a point light?
     pub point: bool,
     /// How many views there may be; see [`MOST_UNIFORM_VIEWS`].
@@ -105,6 +110,53 @@ fn on_screen(needs: &ShaderNeeds) -> String {
 }}
 "
     )
+}
+
+/// The share of a light that is seen, by its masks, and by maps for what has none. Several masks of one light darken once.
+fn masked(needs: &ShaderNeeds) -> String {
+    let others = match &needs.combination {
+        Some(combination) => mapped(needs, combination, "mapped_share"),
+        None => ALL_VISIBLE.replace("visible_share", "mapped_share"),
+    };
+    format!(
+        "{others}
+@group(0) @binding(11) var<uniform> mask_list: array<UmbrageMask, {MOST_MASKS}>;
+@group(0) @binding(12) var masks: texture_2d_array<f32>;
+@group(0) @binding(13) var mask_sampler: sampler;
+
+// The object that is shaded.
+var<private> at_object: u32;
+
+fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
+    var covered = 0.0;
+    let first = light.masks & 0xffffu;
+    for (var i = first; i < first + (light.masks >> 16u); i++) {{
+        // What a mask shows of its own object may lie behind it.
+        if mask_list[i].owner != at_object {{
+            covered = max(covered, umbrage_mask_coverage(masks, mask_sampler, mask_list[i], p_world, normal, towards));
+        }}
+    }}
+    return Seen(1.0 - covered) * mapped_share(index, light, p_world, normal, towards);
+}}
+"
+    )
+}
+
+/// What shaders do besides where each pixel's object counts: comments stand in their place where none does.
+const OBJECTS: [(&str, &str); 8] = [
+    ("// OBJECT_ATTRIBUTE", "@location(8) object: u32,"),
+    ("// OBJECT_VARYING", "@location(8) @interpolate(flat) object: u32,"),
+    ("// OBJECT_OUT", "out.object = i.object;"),
+    ("// OBJECT_TARGET", "@location(1) object: u32,"),
+    ("// OBJECT_KEPT", "out.object = in.object;"),
+    ("// OBJECT_AT", "at_object = in.object;"),
+    ("// OBJECT_BINDING", "@group(1) @binding(2) var objects: texture_2d<u32>;"),
+    ("// OBJECT_READ", "at_object = textureLoad(objects, at, 0).r;"),
+];
+
+fn with_objects(text: &str, needs: &ShaderNeeds) -> String {
+    let objects = OBJECTS.iter().filter(|_| needs.masks);
+    objects.fold(text.to_owned(), |text, (place, code)| text.replace(place, code))
 }
 
 /// The share of a light that is seen, by its maps.
@@ -178,6 +230,9 @@ fn prelude(needs: &ShaderNeeds) -> String {
     let mut modules = needs.combination.as_ref().map(Combination::modules).unwrap_or_default();
     // The debug views locate points and read maps whatever the technique is.
     modules.extend(["view", "light", "cookie", "locate", "face", "map"]);
+    if needs.masks {
+        modules.push("mask");
+    }
     if needs.density {
         modules.push("density");
     }
@@ -190,6 +245,7 @@ fn prelude(needs: &ShaderNeeds) -> String {
     let visibility = match &needs.combination {
         _ if needs.given => GIVEN.to_owned(),
         _ if needs.screen => on_screen(needs),
+        _ if needs.masks => masked(needs),
         Some(combination) => mapped(needs, combination, "visible_share"),
         None => ALL_VISIBLE.to_owned(),
     };
@@ -198,6 +254,7 @@ fn prelude(needs: &ShaderNeeds) -> String {
         ("ANY_BLINN", needs.blinn),
         ("ANY_PLACED", needs.placed),
         ("ANY_SLIDE", needs.slide),
+        ("ANY_EXEMPT", needs.exempt),
     ];
     let flags: String = flags.iter().map(|(name, on)| format!("const {name} = {on};\n")).collect();
     let shared: String =
@@ -212,7 +269,8 @@ fn prelude(needs: &ShaderNeeds) -> String {
 
 /// The shader that draws the scene's meshes.
 pub fn mesh(needs: &ShaderNeeds) -> String {
-    [&prelude(needs), needs.deform.as_deref().unwrap_or(NO_DEFORM), MESH].join("\n")
+    let mesh = with_objects(MESH, needs);
+    [&prelude(needs), needs.deform.as_deref().unwrap_or(NO_DEFORM), &mesh].join("\n")
 }
 
 /// The shader that covers the screen.
@@ -223,7 +281,8 @@ pub fn screen(needs: &ShaderNeeds) -> String {
     } else {
         String::new()
     };
-    [prelude(needs).as_str(), SCREEN, if is_color { CHANNELS } else { "" }, &density].join("\n")
+    let screen = with_objects(SCREEN, needs);
+    [prelude(needs).as_str(), &screen, if is_color { CHANNELS } else { "" }, &density].join("\n")
 }
 
 /// Every shader that the renderer can make, with a name: for validation. Combinations and kinds of scenes do not touch each other,
@@ -234,6 +293,8 @@ pub fn all() -> std::collections::BTreeMap<String, String> {
         combination,
         given: combination.is_none() && lights == 1,
         screen: lights > WRITTEN_OUT,
+        masks: lights == WRITTEN_OUT,
+        exempt: lights > 1,
         metallic_roughness,
         blinn,
         placed: lights != 1,

@@ -1,6 +1,6 @@
 //! Textures that a frame is drawn to.
 
-use crate::pipelines::{COLOR, GBUFFER, format_of};
+use crate::pipelines::{COLOR, GBUFFER, OBJECT, format_of};
 use crate::{RenderError, RenderOptions};
 
 /// The targets of one picture.
@@ -18,6 +18,8 @@ pub struct Targets {
     pub lit_depth: Option<wgpu::TextureView>,
     /// Surfaces; `None` when everything is lit at once and nobody asks for them.
     pub gbuffer: Option<wgpu::TextureView>,
+    /// Each pixel's object, where it is kept.
+    pub objects: Option<wgpu::TextureView>,
     /// Surfaces and depth to be read back, where there is a G-buffer.
     pub surfaces: Option<[wgpu::Texture; 2]>,
     /// Colour with several samples, resolved into the output.
@@ -31,6 +33,8 @@ pub struct TargetNeeds {
     pub gbuffer: bool,
     /// Are surfaces lit as they are drawn, into the picture itself?
     pub lit_at_once: bool,
+    /// Is each pixel's object kept beside the G-buffer?
+    pub objects: bool,
     /// Format of depth.
     pub depth: wgpu::TextureFormat,
 }
@@ -90,6 +94,8 @@ impl Targets {
                 })
             }),
             lit_depth: lit_depth.as_ref().map(view),
+            objects: (deferred && needs.objects)
+                .then(|| view(&make("objects", OBJECT, 1, drawn | Usage::TEXTURE_BINDING))),
             gbuffer: gbuffer.as_ref().map(view),
             multisampled: (samples > 1).then(|| view(&make("samples", COLOR, samples, drawn))),
             surfaces: gbuffer.map(|gbuffer| [gbuffer, depth]),

@@ -41,7 +41,8 @@ struct Light {
     far_m: f32,
     // Places on the light from which it is seen, each with one view or, of a point light, six.
     places: u32,
-    pad: u32,
+    // Its masks: how many, times 65536, and the first.
+    masks: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

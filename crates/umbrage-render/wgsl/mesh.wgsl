@@ -6,6 +6,8 @@ override HAS_NORMAL_TEXTURE = false;
 override HAS_EMISSIVE_TEXTURE = false;
 override IS_CUT_OUT = false;
 override IS_DOUBLE_SIDED = false;
+// It receives no shadow.
+override IS_EXEMPT = false;
 
 struct Material {
     base_color: vec4f,
@@ -39,6 +41,7 @@ struct Instance {
     @location(1) row_x: vec4f,
     @location(2) row_y: vec4f,
     @location(3) row_z: vec4f,
+    // OBJECT_ATTRIBUTE
 }
 
 fn world_position(p_object: vec3f, i: Instance) -> vec3f {
@@ -61,24 +64,31 @@ fn world_normal(n: vec3f, i: Instance) -> vec3f {
 }
 
 struct PlainVertex {
-    @builtin(position) position: vec4f,
+    // The same bits in every pass that draws the same surface: volumes and masks are laid over its depth.
+    @builtin(position) @invariant position: vec4f,
     @location(0) p_world: vec3f,
     @location(1) normal: vec3f,
+    // OBJECT_VARYING
 }
 
 @vertex
 fn vs_plain(@location(0) p_object: vec3f, i: Instance, @location(4) normal: vec3f) -> PlainVertex {
-    let p_world = world_position(p_object, i);
-    return PlainVertex(frame.clip_from_world * vec4f(p_world, 1.0), p_world, world_normal(normal, i));
+    var out: PlainVertex;
+    out.p_world = world_position(p_object, i);
+    out.position = frame.clip_from_world * vec4f(out.p_world, 1.0);
+    out.normal = world_normal(normal, i);
+    // OBJECT_OUT
+    return out;
 }
 
 struct FullVertex {
-    @builtin(position) position: vec4f,
+    @builtin(position) @invariant position: vec4f,
     @location(0) p_world: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec4f,
     @location(3) color: vec4f,
     @location(4) tangent: vec4f,
+    // OBJECT_VARYING
 }
 
 @vertex
@@ -86,11 +96,15 @@ fn vs_full(
     @location(0) p_object: vec3f, i: Instance, @location(4) normal: vec3f,
     @location(5) uv: vec4f, @location(6) color: vec4f, @location(7) tangent: vec4f,
 ) -> FullVertex {
-    let p_world = world_position(p_object, i);
-    return FullVertex(
-        frame.clip_from_world * vec4f(p_world, 1.0), p_world, world_normal(normal, i),
-        uv, color, vec4f(world_direction(tangent.xyz, i), tangent.w),
-    );
+    var out: FullVertex;
+    out.p_world = world_position(p_object, i);
+    out.position = frame.clip_from_world * vec4f(out.p_world, 1.0);
+    out.normal = world_normal(normal, i);
+    out.uv = uv;
+    out.color = color;
+    out.tangent = vec4f(world_direction(tangent.xyz, i), tangent.w);
+    // OBJECT_OUT
+    return out;
 }
 
 fn texture_uv(slot: u32, uv: vec4f) -> vec2f {
@@ -116,7 +130,7 @@ fn plain_surface(p_world: vec3f, normal: vec3f, front: bool) -> Fragment {
     let length2 = dot(across, across);
     s.normal = select(s.shading_normal, across * inverseSqrt(max(length2, 1e-38)), length2 > 1e-38);
     s.normal *= select(-1.0, 1.0, dot(s.normal, s.shading_normal) >= 0.0);
-    s.flags = material.flags;
+    s.flags = material.flags | select(0u, EXEMPT, IS_EXEMPT);
     s.base_color = material.base_color.rgb;
     s.specular = material.specular;
     s.gloss = material.gloss;
@@ -162,22 +176,34 @@ fn cut_out(alpha: f32) {
     }
 }
 
-@fragment
-fn fs_gbuffer_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4u {
-    return pack_surface(plain_surface(in.p_world, in.normal, front).surface);
+struct Gbuffer {
+    @location(0) surface: vec4u,
+    // OBJECT_TARGET
 }
 
 @fragment
-fn fs_gbuffer_full(in: FullVertex, @builtin(front_facing) front: bool) -> @location(0) vec4u {
+fn fs_gbuffer_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> Gbuffer {
+    var out: Gbuffer;
+    out.surface = pack_surface(plain_surface(in.p_world, in.normal, front).surface);
+    // OBJECT_KEPT
+    return out;
+}
+
+@fragment
+fn fs_gbuffer_full(in: FullVertex, @builtin(front_facing) front: bool) -> Gbuffer {
     let f = full_surface(in, front);
     cut_out(f.alpha);
-    return pack_surface(f.surface);
+    var out: Gbuffer;
+    out.surface = pack_surface(f.surface);
+    // OBJECT_KEPT
+    return out;
 }
 
 @fragment
 fn fs_forward_plain(in: PlainVertex, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let f = plain_surface(in.p_world, in.normal, front);
     at_pixel = vec2u(in.position.xy);
+    // OBJECT_AT
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }
 
@@ -186,5 +212,6 @@ fn fs_forward_full(in: FullVertex, @builtin(front_facing) front: bool) -> @locat
     let f = full_surface(in, front);
     cut_out(f.alpha);
     at_pixel = vec2u(in.position.xy);
+    // OBJECT_AT
     return vec4f(shade(f.surface, in.p_world) + f.emissive * frame.exposure, f.alpha);
 }

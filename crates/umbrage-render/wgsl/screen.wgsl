@@ -2,6 +2,7 @@
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var depth: texture_depth_2d;
+// OBJECT_BINDING
 
 // One triangle over the whole picture, at the depth of nothing.
 @vertex
@@ -16,6 +17,7 @@ struct Pixel {
 
 fn pixel(position: vec4f) -> Pixel {
     let at = vec2u(position.xy);
+    // OBJECT_READ
     let stored = textureLoad(depth, at, 0);
     let uv = position.xy / vec2f(textureDimensions(depth));
     let p = frame.world_from_clip * vec4f(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, stored, 1.0);

@@ -9,6 +9,9 @@ fn towards_eye(p_world: vec3f) -> vec3f {
 // number, or three where light may be coloured on its way.
 fn visibility(index: u32, light: Light, s: Surface, p_world: vec3f, towards_light: vec3f) -> Seen {
     let in_cone = light.kind != SPOT || dot(-towards_light, light.direction) >= light.cos_outer;
+    if ANY_EXEMPT && (s.flags & EXEMPT) != 0u {
+        return Seen(select(0.0, 1.0, in_cone));
+    }
     return select(Seen(0.0), visible_share(index, light, p_world, s.normal, towards_light), in_cone);
 }
 

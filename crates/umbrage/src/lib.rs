@@ -6,6 +6,7 @@
 pub mod caster;
 pub mod format;
 pub mod maps;
+pub mod mask;
 pub mod peel;
 pub mod soften;
 pub mod translucent;

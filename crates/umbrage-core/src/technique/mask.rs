@@ -37,7 +37,15 @@ choices! {
         Adaptive = Choice {
             id: "adaptive",
             label: "Adaptive",
-            summary: "as wide as the blocker needs along each axis, so that its outline always fills the mask",
+            summary: "from the blocker's first to its last point along each axis, so that its outline always fills the mask",
+            source: Some(NAGY),
+            ..EMPTY
+        };
+        /// As the blocker needs, the same to both sides.
+        Symmetric = Choice {
+            id: "symmetric",
+            label: "Symmetric",
+            summary: "as far to both sides of the axis as the blocker reaches to one, the published form of adapting",
             source: Some(NAGY),
             ..EMPTY
         };

@@ -21,7 +21,7 @@ pub enum Family {
 
 impl Family {
     /// All that have choices.
-    pub const WITH_CHOICES: [Self; 2] = [Self::Map, Self::Volume];
+    pub const WITH_CHOICES: [Self; 3] = [Self::Map, Self::Volume, Self::Mask];
 
     /// One word.
     pub fn id(self) -> &'static str {

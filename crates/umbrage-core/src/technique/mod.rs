@@ -13,6 +13,7 @@ pub mod volume;
 
 pub use choices::{Bias, Choice, Filter, Projection, Steps, Storage, Translucent};
 pub use combination::Combination;
+use mask::Mask;
 pub use method::{Family, Method, Table};
 pub use settings::{SettingError, Settings};
 use volume::Volume;
@@ -210,6 +211,20 @@ pub const TECHNIQUES: &[Technique] = &[
         source: Some(BJORKE),
         method: Method::Volume(Volume { soften: volume::Soften::Blur, ..Volume::DEFAULT }),
     },
+    Technique {
+        id: "mask",
+        label: "Projective mask",
+        summary: "each blocker's outline, filling a mask of its own, laid over other objects beyond it; no bias, no shadow on itself",
+        source: Some(mask::NAGY),
+        method: Method::Mask(Mask::DEFAULT),
+    },
+    Technique {
+        id: "mask-subtractive",
+        label: "Subtractive mask",
+        summary: "the same in the classic form: receivers are drawn once more for each mask, and the stencil lets them darken once",
+        source: Some(mask::NAGY),
+        method: Method::Mask(Mask { receivers: mask::Receivers::Subtractive, ..Mask::DEFAULT }),
+    },
 ];
 
 /// The technique of that name.
@@ -240,7 +255,7 @@ mod tests {
     fn every_parameter_is_described_and_its_default_is_in_range() {
         let mut seen = 0;
         let maps = Combination::all().map(Method::Map);
-        let others = Volume::all().map(Method::Volume).chain([Method::Mask(mask::Mask::DEFAULT)]);
+        let others = Volume::all().map(Method::Volume).chain([Method::Mask(Mask::DEFAULT)]);
         for method in maps.chain(others) {
             for param in method.params() {
                 let reach_texel = method.combination().map_or(0.0, |c| c.reach_texel(5.0));

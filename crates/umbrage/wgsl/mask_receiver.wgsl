@@ -1,0 +1,65 @@
+// Receivers drawn once more for one mask, over V: each takes away what the blocker covers.
+
+struct Receiving {
+    clip_from_world: mat4x4f,
+    // Place and 1, or the direction towards it and 0.
+    eye: vec4f,
+    light: vec4f,
+}
+
+@group(0) @binding(0) var<uniform> receiving: Receiving;
+// A dynamic offset picks the mask.
+@group(0) @binding(1) var<uniform> mask: UmbrageMask;
+@group(0) @binding(2) var masks: texture_2d_array<f32>;
+@group(0) @binding(3) var mask_sampler: sampler;
+
+struct Instance {
+    @location(1) row_x: vec4f,
+    @location(2) row_y: vec4f,
+    @location(3) row_z: vec4f,
+}
+
+struct Received {
+    // The same bits as where the surfaces were drawn.
+    @builtin(position) @invariant position: vec4f,
+    @location(0) p_world: vec3f,
+}
+
+@vertex
+fn vs_receiver(@location(0) p_object: vec3f, i: Instance) -> Received {
+    let p = vec4f(p_object, 1.0);
+    let p_world = vec3f(dot(i.row_x, p), dot(i.row_y, p), dot(i.row_z, p));
+    return Received(receiving.clip_from_world * vec4f(p_world, 1.0), p_world);
+}
+
+// How much the blocker covers here. Neighbouring pixels of a triangle span its plane; its normal is on the eye's side.
+fn coverage(p_world: vec3f) -> f32 {
+    let across = cross(dpdx(p_world), dpdy(p_world));
+    let to_eye = receiving.eye.xyz - p_world * receiving.eye.w;
+    let normal = select(-across, across, dot(across, to_eye) >= 0.0);
+    let towards = receiving.light.xyz - p_world * receiving.light.w;
+    return umbrage_mask_coverage(masks, mask_sampler, mask, p_world, normal, towards);
+}
+
+// A texel of eight bits may be off by half a step.
+const WHOLE = 0.998;
+
+// All of the light: what is dark is marked in the stencil, and nothing darkens it again.
+@fragment
+fn fs_core(in: Received) -> @location(0) vec4f {
+    let covered = coverage(in.p_world);
+    if covered < WHOLE {
+        discard;
+    }
+    return vec4f(1.0);
+}
+
+// A part of it, where the edge of a mask is smooth: the darkest of several counts.
+@fragment
+fn fs_fringe(in: Received) -> @location(0) vec4f {
+    let covered = coverage(in.p_world);
+    if covered <= 0.0 {
+        discard;
+    }
+    return vec4f(1.0 - covered);
+}
