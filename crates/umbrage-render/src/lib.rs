@@ -14,6 +14,7 @@ mod exposure;
 mod frame;
 mod geometry;
 pub mod gpu;
+mod heat;
 mod layout;
 mod lights;
 mod maps;
