@@ -11,6 +11,7 @@ use crate::maps::{Casting, Growing, MapMaker, MapSet};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::options::{RenderOptions, View};
+use crate::overdraw::{self, OverdrawPipelines};
 use crate::peeled::{Peeled, caster_passes};
 use crate::pipelines::{DEPTH_FORMAT, Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
@@ -42,6 +43,7 @@ pub struct Renderer<'a> {
     pub(crate) material_of_mesh: Arc<Vec<usize>>,
     pub(crate) maker: Arc<MapMaker>,
     pub(crate) volumes: Option<Volumes>,
+    pub(crate) overdraw: Option<OverdrawPipelines>,
     /// One set of maps, or two that a thread and the frames exchange.
     pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
     pub(crate) schedule: MapSchedule,
@@ -70,7 +72,9 @@ pub struct Renderer<'a> {
     exposure: f32,
     /// Warnings that no change takes away, and all.
     lasting: Vec<String>,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    /// How many of them were there before the frame.
+    pub(crate) told_warnings: usize,
 }
 
 impl<'a> Renderer<'a> {
@@ -95,6 +99,7 @@ impl<'a> Renderer<'a> {
         let targets = Targets::new(&gpu.device, &options, &target_needs)?;
 
         check_given(scene, &options)?;
+        overdraw::check(&options)?;
         options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
         options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
@@ -166,6 +171,7 @@ impl<'a> Renderer<'a> {
             materials: Arc::clone(&maker.materials),
             material_of_mesh: Arc::clone(&maker.material_of_mesh),
             maker: Arc::new(maker),
+            overdraw: OverdrawPipelines::of_view(&gpu.device, &options, volumes.as_ref(), depth),
             volumes,
             sets: vec![Arc::new(Mutex::new(set))],
             schedule: MapSchedule::default(),
@@ -190,6 +196,7 @@ impl<'a> Renderer<'a> {
             exposure,
             lasting,
             warnings: Vec::new(),
+            told_warnings: 0,
             options,
         };
         let set = Arc::clone(&renderer.sets[0]);
@@ -243,6 +250,7 @@ impl<'a> Renderer<'a> {
             let (size, all) = (self.options.size, self.options.all_casters);
             self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
         }
+        self.told_warnings = self.warnings.len();
         self.told = Some(now);
         Ok(())
     }
@@ -279,7 +287,7 @@ impl<'a> Renderer<'a> {
         self.exposure
     }
 
-    /// What did not go as a user may expect.
+    /// What did not go as a user may expect; of [`View::Volumes`] also what the last frame counted.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
