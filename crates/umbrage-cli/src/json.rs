@@ -6,7 +6,9 @@ use serde_json::{Map, Value};
 pub use umbrage_measure::{decimal, median, params};
 use umbrage_render::umbrage::ChosenFormat;
 use umbrage_render::umbrage::core::technique::{Param, ParamDefault, Source};
-use umbrage_render::{DensityStatistics, PERCENTILES, PassReport, Renderer, Spread, View};
+use umbrage_render::{
+    DensityStatistics, OverdrawPart, OverdrawStatistics, PERCENTILES, PassReport, Renderer, Spread, View,
+};
 use umbrage_scene::Scene;
 
 /// A picture and all that is known of it.
@@ -34,6 +36,8 @@ pub struct RenderJson {
     pub exposure: f64,
     /// `null` in views that do not hold it.
     pub density: Option<DensityJson>,
+    /// `null` in views that do not hold it.
+    pub overdraw: Option<OverdrawJson>,
     pub timings: Timings,
     pub output: String,
     pub notes: Vec<String>,
@@ -137,13 +141,64 @@ pub struct SpreadJson {
     pub mean: f64,
 }
 
-/// Share of the receivers with so many texels a pixel.
+/// Share of what has so many texels, or faces of volumes, a pixel.
 #[derive(Debug, Serialize)]
 pub struct OctaveJson {
     pub from: f64,
     /// `null`: without bound.
     pub to: Option<f64>,
     pub share: f64,
+}
+
+/// Faces of the light's shadow volumes in a pixel.
+#[derive(Debug, Serialize)]
+pub struct OverdrawJson {
+    /// All that are rasterised.
+    pub fragments: u64,
+    /// Of all pixels.
+    #[serde(flatten)]
+    pub picture: OverdrawPartJson,
+    /// Of pixels that show a lit receiver; `null` where there is none.
+    pub lit: Option<OverdrawPartJson>,
+    /// Of those that show a receiver in shadow; `null` where there is none.
+    pub shadow: Option<OverdrawPartJson>,
+    /// How many volumes the surface is in that is in most; a stencil holds up to 255.
+    pub deepest_count: i32,
+    /// Pixels that are lit because the stencil wraps.
+    pub wrongly_lit_pixels: usize,
+    /// Pixels with so many faces that they are not told apart.
+    pub unsure_pixels: usize,
+    pub histogram: Vec<OctaveJson>,
+}
+
+/// Faces of volumes over a part of the picture.
+#[derive(Debug, Serialize)]
+pub struct OverdrawPartJson {
+    pub pixels: usize,
+    pub mean: f64,
+    pub most: u32,
+}
+
+impl From<&OverdrawStatistics> for OverdrawJson {
+    fn from(found: &OverdrawStatistics) -> Self {
+        let part =
+            |part: &OverdrawPart| OverdrawPartJson { pixels: part.pixels, mean: part.mean, most: part.most };
+        let cell = |cell: &umbrage_render::FacesShare| OctaveJson {
+            from: f64::from(cell.from),
+            to: cell.to.map(f64::from),
+            share: cell.share,
+        };
+        Self {
+            fragments: found.fragments,
+            picture: part(&found.picture),
+            lit: found.lit.as_ref().map(part),
+            shadow: found.shadow.as_ref().map(part),
+            deepest_count: found.deepest_count,
+            wrongly_lit_pixels: found.wrongly_lit_pixels,
+            unsure_pixels: found.unsure_pixels,
+            histogram: found.histogram.iter().map(cell).collect(),
+        }
+    }
 }
 
 impl DensityJson {

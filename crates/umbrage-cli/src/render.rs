@@ -2,14 +2,17 @@
 
 use crate::args::RenderArgs;
 use crate::fault::{Fault, say, tell};
-use crate::json::{self, DensityJson, Machine, MapFormat, PassJson, RenderJson, SceneJson, Timings};
+use crate::json::{
+    self, DensityJson, Machine, MapFormat, OverdrawJson, PassJson, RenderJson, SceneJson, Timings,
+};
 use crate::setup::{self, Stage};
 use crate::text;
 use std::path::Path;
 use std::time::Instant;
 use umbrage_render::picture::write_png;
 use umbrage_render::{
-    DensityStatistics, FrameReport, Gpu, Measure, PassReport, RenderOptions, Renderer, View,
+    DensityStatistics, FrameReport, Gpu, Measure, OverdrawPart, OverdrawStatistics, PassReport,
+    RenderOptions, Renderer, View,
 };
 
 /// Draws it, writes it, says what it is.
@@ -67,6 +70,8 @@ struct Drawn {
     maps_reused: u64,
     /// Texels per pixel, in the views that show them; `None` inside where no receiver is seen.
     density: Option<Option<DensityStatistics>>,
+    /// Faces of volumes per pixel, in the view that shows them.
+    overdraw: Option<OverdrawStatistics>,
 }
 
 /// The frames; the first is dropped when there are several, because drivers compile then. Passes are measured in a frame
@@ -101,7 +106,9 @@ fn draw(renderer: &mut Renderer<'_>, count: u32, statistics: bool) -> Result<Dra
     }
     let shows_density = renderer.options().view.is_density();
     let density = if shows_density { Some(renderer.density_statistics()?) } else { None };
-    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused, density })
+    let shows_overdraw = renderer.options().view == View::Volumes;
+    let overdraw = shows_overdraw.then(|| renderer.overdraw_statistics()).transpose()?;
+    Ok(Drawn { frames_ms, passes, maps_drawn, maps_reused, density, overdraw })
 }
 
 /// Can the picture be written there? Asked before any work.
@@ -168,6 +175,7 @@ fn report(
         maps_reused: drawn.maps_reused,
         exposure: json::decimal(renderer.exposure()),
         density: drawn.density.as_ref().map(|found| DensityJson::of(options.view, found.as_ref())),
+        overdraw: drawn.overdraw.as_ref().map(OverdrawJson::from),
         timings: Timings { load_ms: stage.load_ms, setup_ms, frame_ms, write_ms },
         output: args.output.display().to_string(),
         notes: stage.notes.clone(),
@@ -194,6 +202,20 @@ fn density_sentence(view: View, found: Option<&DensityStatistics>) -> String {
     )
 }
 
+/// Faces of volumes per pixel for people.
+fn overdraw_sentence(found: &OverdrawStatistics) -> String {
+    let mean =
+        |part: Option<&OverdrawPart>| part.map_or("none".to_owned(), |part| format!("{:.1}", part.mean));
+    format!(
+        "faces of volumes per pixel: {} in the mean (lit {}, in shadow {}), {} at most; the deepest count is {}, a stencil holds 255\n",
+        mean(Some(&found.picture)),
+        mean(found.lit.as_ref()),
+        mean(found.shadow.as_ref()),
+        found.picture.most,
+        found.deepest_count
+    )
+}
+
 fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>, drawn: &Drawn) -> String {
     let options = renderer.options();
     let maps = match renderer.map_format() {
@@ -215,8 +237,9 @@ fn summary(args: &RenderArgs, stage: &Stage, gpu: &Gpu, renderer: &Renderer<'_>,
     };
     let density =
         drawn.density.as_ref().map_or(String::new(), |found| density_sentence(options.view, found.as_ref()));
+    let overdraw = drawn.overdraw.as_ref().map_or(String::new(), overdraw_sentence);
     format!(
-        "{}: {} triangles, {}{maps}, on {}: {time}\n{density}{} view of {}x{} pixels written to {}\n",
+        "{}: {} triangles, {}{maps}, on {}: {time}\n{density}{overdraw}{} view of {}x{} pixels written to {}\n",
         stage.scene.name,
         text::count(stage.scene.triangles()),
         options.settings.technique.id,

@@ -283,6 +283,7 @@ fn json_of_a_picture_has_every_key_and_only_finite_numbers() {
         "shadow_memory_bytes",
         "exposure",
         "density",
+        "overdraw",
         "timings",
         "output",
         "notes",
@@ -340,10 +341,23 @@ fn every_view_of_every_light_kind_is_drawn_or_refused_with_a_reason() {
         return;
     }
     let folder = Folder::new("views");
-    for view in ["final", "visibility", "light", "depth", "distance", "projected", "density", "density-light"]
-    {
+    for view in [
+        "final",
+        "visibility",
+        "light",
+        "depth",
+        "distance",
+        "projected",
+        "density",
+        "density-light",
+        "volumes",
+    ] {
+        let technique = if view == "volumes" { "volume" } else { "linear" };
         for light in ["kind=spot", "kind=directional", "kind=point"] {
-            let output = umbrage(&folder.0, &["render", "--size", "64x36", "--view", view, "--light", light]);
+            let output = umbrage(
+                &folder.0,
+                &["render", "--size", "64x36", "-t", technique, "--view", view, "--light", light],
+            );
             succeeded(&output);
             assert!(text(&output.stdout).contains("written to umbrage.png"), "{}", text(&output.stdout));
         }

@@ -4,7 +4,7 @@ use crate::fit::MaskView;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec4};
 
-/// Mirrors `UmbrageMask` of `wgsl/mask.wgsl`; see there for what each field means. 112 bytes, so that uniform buffers may hold
+/// Mirrors `UmbrageMask` of `wgsl/mask.wgsl`; see there for what each field means. 160 bytes, so that uniform buffers may hold
 /// arrays of it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -27,6 +27,12 @@ pub struct GpuMask {
     pub texel_uv: f32,
     /// 1 or 0.
     pub perspective: u32,
+    /// The light's place and 1, or the direction towards it and 0.
+    pub light_world: Vec4,
+    /// Corner of the blocker's box, and nothing.
+    pub box_min: Vec4,
+    /// The other corner, and nothing.
+    pub box_max: Vec4,
 }
 
 impl GpuMask {
@@ -46,6 +52,9 @@ impl GpuMask {
             texel: view.texel,
             texel_uv: 1.0 / view.size_texel as f32,
             perspective: u32::from(view.perspective),
+            light_world: view.light_point_world(),
+            box_min: view.bounds_world.min.extend(0.0),
+            box_max: view.bounds_world.max.extend(0.0),
         }
     }
 }
@@ -81,6 +90,9 @@ mod tests {
             ("texel", offset_of!(GpuMask, texel)),
             ("texel_uv", offset_of!(GpuMask, texel_uv)),
             ("perspective", offset_of!(GpuMask, perspective)),
+            ("light_world", offset_of!(GpuMask, light_world)),
+            ("box_min", offset_of!(GpuMask, box_min)),
+            ("box_max", offset_of!(GpuMask, box_max)),
         ];
         assert_eq!(shader, mirror);
         assert_eq!(span as usize, size_of::<GpuMask>());

@@ -20,6 +20,11 @@ struct UmbrageMask {
     texel_uv: f32,
     // 1: rays come from a place, 0: they are parallel.
     perspective: u32,
+    // The light's place and 1, or the direction towards it and 0.
+    light_world: vec4f,
+    // Box around the blocker, world space; w is nothing.
+    box_min: vec4f,
+    box_max: vec4f,
 }
 
 // Where a point is along the axis. 0: before the blocker or behind the light; 1: between its nearest and its farthest point,
@@ -27,6 +32,21 @@ struct UmbrageMask {
 fn umbrage_mask_region(mask: UmbrageMask, p_world: vec3f) -> u32 {
     let depth_m = dot(mask.depth_from_world, vec4f(p_world, 1.0));
     return select(0u, 1u, depth_m >= mask.near_m) + select(0u, 1u, depth_m > mask.far_m);
+}
+
+// Does the ray of light to a point meet the blocker's box before the point? What stands on a blocker, or beside it, is then not
+// darkened by it, though a part of the blocker is nearer to the light. A point that the box just touches counts as before it.
+fn umbrage_mask_box_is_before(mask: UmbrageMask, p_world: vec3f) -> bool {
+    let way = mask.light_world.xyz - p_world * mask.light_world.w;
+    let tiny = vec3f(1e-30);
+    let per_way = 1.0 / select(max(way, tiny), min(way, -tiny), way < vec3f(0.0));
+    let a = (mask.box_min.xyz - p_world) * per_way;
+    let b = (mask.box_max.xyz - p_world) * per_way;
+    // From the point towards the light: the ray leaves the box last where it came in.
+    let leaves = min(min(max(a.x, b.x), max(a.y, b.y)), max(a.z, b.z));
+    let size = mask.box_max.xyz - mask.box_min.xyz;
+    let margin_m = 1e-3 * max(size.x, max(size.y, size.z));
+    return leaves * length(way) > margin_m;
 }
 
 // How much of the light the blocker takes from a surface at `p_world`: 1 all, 0 nothing. `masks` holds 1 where a blocker covers;
@@ -43,11 +63,16 @@ fn umbrage_mask_coverage(
     towards_light: vec3f,
 ) -> f32 {
     let p = mask.texture_from_world * vec4f(p_world, 1.0);
-    // Behind the light the division would show a phantom, the outline mirrored through the light: the region says 0 there.
-    let shows = p.w > 0.0 && umbrage_mask_region(mask, p_world) > 0u && dot(normal, towards_light) > 0.0;
+    let uv = p.xy / max(p.w, 1e-30);
+    // Behind the light the division would show a phantom, the outline mirrored through the light. Outside of the mask its border
+    // goes on, which is empty: most masks end here for most surfaces.
+    if p.w <= 0.0 || any(abs(uv - 0.5) > vec2f(0.5)) || dot(normal, towards_light) <= 0.0 {
+        return 0.0;
+    }
+    if umbrage_mask_region(mask, p_world) == 0u || !umbrage_mask_box_is_before(mask, p_world) {
+        return 0.0;
+    }
     // Half a texel in: there no address mode reaches across to the other side.
     let edge = 0.5 * mask.texel_uv;
-    let uv = clamp(p.xy / max(p.w, 1e-30), vec2f(edge), vec2f(1.0 - edge));
-    let covered = textureSampleLevel(masks, mask_sampler, uv, mask.layer, 0.0).r;
-    return select(0.0, covered, shows);
+    return textureSampleLevel(masks, mask_sampler, clamp(uv, vec2f(edge), vec2f(1.0 - edge)), mask.layer, 0.0).r;
 }

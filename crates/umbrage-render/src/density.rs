@@ -2,6 +2,7 @@
 
 mod picture;
 
+use crate::heat::OCTAVES;
 use crate::{RenderError, RenderOptions, Renderer, View, readback};
 use umbrage::core::density::Density;
 use umbrage::core::technique::{Bias, Method};
@@ -12,9 +13,6 @@ pub const EDGE_ON_COS: f32 = 0.1;
 
 /// The percentiles that are told.
 pub const PERCENTILES: [u8; 7] = [1, 5, 25, 50, 75, 95, 99];
-
-/// Octaves of the histogram: from 1/16 to 16, and what lies beyond on both sides.
-const OCTAVES: i32 = 8;
 
 /// One pixel of the target: see `wgsl/density.wgsl`.
 #[derive(Clone, Copy, Debug)]
@@ -94,6 +92,7 @@ impl DensityStatistics {
             return None;
         }
         let count = receivers.len() as f64;
+        // From 1/16 to 16.
         let bounds: Vec<f64> = (0..=OCTAVES).map(|i| f64::from(i - OCTAVES / 2).exp2()).collect();
         let mut counts = vec![0usize; bounds.len() + 1];
         for receiver in &receivers {

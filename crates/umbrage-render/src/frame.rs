@@ -145,6 +145,10 @@ impl Renderer<'_> {
             work.push(self.work_of(&self.solid));
             pass += 1;
         }
+        if let Some(done) = self.record_overdraw(&mut encoder, &queries, pass) {
+            work.push(done);
+            pass += 1;
+        }
         // 5. What is mixed by alpha, over it.
         if self.blends() {
             self.record_blended(&mut encoder, &queries, pass);
@@ -167,6 +171,7 @@ impl Renderer<'_> {
             .map(|((name, work), (gpu_ms, statistics))| PassReport { name, work, gpu_ms, statistics })
             .collect();
         let maps_drawn = if self.thread.is_some() { by_thread } else { drawn.len() as u64 };
+        self.warn_of_overflow()?;
         self.ages.begin(self.world.version, start);
         let (maps_age_frames, maps_age_ms) = self.ages.of(version, start);
         let maps_reused = count.saturating_sub(maps_drawn);
@@ -193,6 +198,9 @@ impl Renderer<'_> {
     pub fn picture(&self) -> Result<Vec<u8>, RenderError> {
         if self.options.view.is_density() {
             return self.density_picture();
+        }
+        if self.options.view == View::Volumes {
+            return self.overdraw_picture();
         }
         if self.options.view != View::Visibility {
             return readback::texture(self.gpu, &self.targets.output);
@@ -244,6 +252,7 @@ impl Renderer<'_> {
             View::Final | View::Light => {
                 wgpu::Color { r: background.x, g: background.y, b: background.z, a: 1.0 }
             }
+            View::Volumes => wgpu::Color::TRANSPARENT,
             view if view.is_density() => wgpu::Color::TRANSPARENT,
             _ => wgpu::Color::WHITE,
         }
@@ -271,6 +280,7 @@ impl Renderer<'_> {
             View::Final | View::Light => "lighting".to_owned(),
             other => other.id().to_owned(),
         });
+        names.extend(self.overdraw.as_ref().map(|_| format!("overdraw {}", self.options.shown_light)));
         if self.blends() {
             names.push("blended".to_owned());
         }

@@ -25,11 +25,13 @@ pub enum View {
     Density,
     /// The same numbers in each texel of the map.
     DensityLight,
+    /// Faces of the light's shadow volumes in a pixel, over the dimmed scene, with a legend and a histogram.
+    Volumes,
 }
 
 impl View {
     /// All views.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Final,
         Self::Visibility,
         Self::Light,
@@ -39,6 +41,7 @@ impl View {
         Self::Channels,
         Self::Density,
         Self::DensityLight,
+        Self::Volumes,
     ];
 
     /// Name on the command line.
@@ -53,6 +56,7 @@ impl View {
             Self::Channels => "channels",
             Self::Density => "density",
             Self::DensityLight => "density-light",
+            Self::Volumes => "volumes",
         }
     }
 
@@ -70,6 +74,9 @@ impl View {
             Self::DensityLight => {
                 "the same from the light's eye, in its map; grey where the eye does not look"
             }
+            Self::Volumes => {
+                "faces of shadow volumes per pixel, which is what counting costs, and the deepest count"
+            }
         }
     }
 
@@ -85,7 +92,7 @@ impl View {
 
     /// Does it need the map itself, and so a light that has one?
     pub fn needs_map(self) -> bool {
-        !matches!(self, Self::Final | Self::Visibility)
+        !matches!(self, Self::Final | Self::Visibility | Self::Volumes)
     }
 }
 

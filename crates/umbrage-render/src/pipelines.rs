@@ -23,6 +23,8 @@ pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const GREY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// Texels per pixel, unrounded: see `wgsl/density.wgsl`.
 pub const DENSITY: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Faces of volumes, added up: see `overdraw.rs`. Every device adds to it, and it counts to 2048 exactly.
+pub const OVERDRAW: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// V, unrounded.
 pub const VISIBILITY: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// V where it is a colour, unrounded.
@@ -35,6 +37,7 @@ pub fn format_of(view: View, colors_light: bool) -> wgpu::TextureFormat {
         View::Visibility if colors_light => VISIBILITY_RGB,
         View::Visibility => VISIBILITY,
         View::Density | View::DensityLight => DENSITY,
+        View::Volumes => OVERDRAW,
         View::Depth | View::Distance | View::Projected | View::Channels => GREY,
     }
 }
@@ -321,6 +324,7 @@ pub fn screen_pipeline(
         View::Channels => "fs_channels",
         View::Density => "fs_density",
         View::DensityLight => "fs_density_light",
+        View::Volumes => "fs_volumes",
     };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),

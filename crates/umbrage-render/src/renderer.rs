@@ -12,6 +12,7 @@ use crate::masks::{Masks, has_holes, unmaskable};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::options::{RenderOptions, View};
+use crate::overdraw::{self, OverdrawPipelines};
 use crate::peeled::{Peeled, caster_passes};
 use crate::pipelines::{DEPTH_FORMAT, Layouts, MeshPipelines, MeshTarget, screen_pipeline};
 use crate::shaders::ShaderNeeds;
@@ -46,6 +47,7 @@ pub struct Renderer<'a> {
     pub(crate) volumes: Option<Volumes>,
     pub(crate) masks: Option<Masks>,
     pub(crate) objects: Growing,
+    pub(crate) overdraw: Option<OverdrawPipelines>,
     /// One set of maps, or two that a thread and the frames exchange.
     pub(crate) sets: Vec<Arc<Mutex<MapSet>>>,
     pub(crate) schedule: MapSchedule,
@@ -74,7 +76,9 @@ pub struct Renderer<'a> {
     exposure: f32,
     /// Warnings that no change takes away, and all.
     lasting: Vec<String>,
-    warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
+    /// How many of them were there before the frame.
+    pub(crate) told_warnings: usize,
 }
 
 impl<'a> Renderer<'a> {
@@ -101,6 +105,7 @@ impl<'a> Renderer<'a> {
         let targets = Targets::new(&gpu.device, &options, &target_needs)?;
 
         check_given(scene, &options)?;
+        overdraw::check(&options)?;
         options.deform.as_deref().map_or(Ok(()), own_wgsl::check_deform)?;
         options.kernel.as_deref().map_or(Ok(()), own_wgsl::check_kernel)?;
         let exposure = options.exposure.unwrap_or_else(|| automatic_exposure(scene));
@@ -187,6 +192,7 @@ impl<'a> Renderer<'a> {
             materials: Arc::clone(&maker.materials),
             material_of_mesh: Arc::clone(&maker.material_of_mesh),
             maker: Arc::new(maker),
+            overdraw: OverdrawPipelines::of_view(&gpu.device, &options, volumes.as_ref(), depth),
             volumes,
             masks,
             objects: Growing::new(&gpu.device, "objects", wgpu::BufferUsages::VERTEX, 0),
@@ -213,6 +219,7 @@ impl<'a> Renderer<'a> {
             exposure,
             lasting,
             warnings: Vec::new(),
+            told_warnings: 0,
             options,
         };
         let set = Arc::clone(&renderer.sets[0]);
@@ -268,6 +275,7 @@ impl<'a> Renderer<'a> {
             let (size, all) = (self.options.size, self.options.all_casters);
             self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
         }
+        self.told_warnings = self.warnings.len();
         self.told = Some(now);
         Ok(())
     }
@@ -324,7 +332,7 @@ impl<'a> Renderer<'a> {
         self.exposure
     }
 
-    /// What did not go as a user may expect.
+    /// What did not go as a user may expect; of [`View::Volumes`] also what the last frame counted.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -15,8 +15,9 @@ use umbrage::core::volume as maths;
 use umbrage::core::{DEPTH, Frustum};
 use umbrage::soften::{SoftenedV, Softener, Softness, record_soften, soften};
 use umbrage::volume::{
-    Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, count_volumes,
-    find_silhouettes, record_counts, record_silhouettes, record_visibility, write_visibility,
+    Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, Winding,
+    count_volumes, draw_volumes, find_silhouettes, record_counts, record_silhouettes, record_visibility,
+    write_visibility,
 };
 use umbrage_scene::{Mesh, Scene};
 
@@ -324,6 +325,28 @@ impl Volumes {
             }
         }
         works
+    }
+
+    /// Pipelines that count, and make others.
+    pub fn pipelines(&self) -> &VolumePipelines {
+        &self.pipelines
+    }
+
+    /// Draws a light's volumes as they are counted, where they are, with pipelines of somebody else's; says what that asks of the
+    /// GPU.
+    pub fn draw_again<'a>(
+        &self,
+        recorded: &mut wgpu::RenderPass<'_>,
+        light: usize,
+        pipeline: impl Fn(Counted, Winding) -> &'a wgpu::RenderPipeline,
+    ) -> Work {
+        let light = &self.lights[light];
+        let (Some(volumes), Some([x, y, width, height])) = (&light.volumes, light.scissor) else {
+            return Work::default();
+        };
+        recorded.set_scissor_rect(x, y, width, height);
+        draw_volumes(recorded, volumes, &self.meshes, &light.draw, pipeline);
+        self.work(light, &light.draw)
     }
 
     /// What drawing volumes asks of the GPU. What a compute pass finds is not known here: [`crate::Renderer::silhouettes`] reads it back.

@@ -465,6 +465,27 @@ fn density_s_legend() {
     density("density-legend", &builtin("tilt"), View::Density, 176);
 }
 
+/// Faces of volumes without end; those of short ones must not pass for them.
+fn faces_of_volumes(name: &str, scene: &str, side: u32) {
+    let Some(gpu) = gpu() else { return };
+    let shot = |extrude_m| {
+        let settings = settings("volume", &[("counting", "depth-pass"), ("extrude_m", extrude_m)]);
+        shoot(&gpu, &builtin(scene), settings, View::Volumes, side)
+    };
+    check_differs(name, &shot("0.2"), "faces of short volumes");
+    check(name, &shot("0"));
+}
+
+#[test]
+fn faces_of_volumes_over_the_scene() {
+    faces_of_volumes("volumes-view", "torus", 128);
+}
+
+#[test]
+fn faces_of_volumes_and_their_legend() {
+    faces_of_volumes("volumes-view-legend", "tilt", 176);
+}
+
 /// A row of a table without a golden of its own is a choice that nobody looked at.
 #[test]
 fn every_choice_of_the_tables_has_a_golden_and_every_filter_its_shader() {

@@ -27,15 +27,14 @@ fn density_of(light: Light, view: UmbrageView, s: Surface, p_world: vec3f, grey:
     return vec4f(found.mean, found.least, found.most, clamp(grey, LEAST_GREY, 1.0));
 }
 
-// From the eye. A receiver's grey is the lit picture's, so that shadows are seen; that of others as if the eye held a lamp.
+// From the eye.
 @fragment
 fn fs_density(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let here = pixel(position);
     at_pixel = vec2u(position.xy);
     let light = lights[frame.shown_light];
-    let lit = dot(max(shade(here.surface, here.p_world), vec3f(0.0)), vec3f(0.21, 0.72, 0.07));
-    let lamp = 0.8 * saturate(dot(here.surface.shading_normal, towards_eye(here.p_world)));
-    return density_of(light, shown_view(light, here.p_world), here.surface, here.p_world, sqrt(lit), lamp);
+    let view = shown_view(light, here.p_world);
+    return density_of(light, view, here.surface, here.p_world, lit_grey(here), lamp_grey(here));
 }
 
 // The place in the world that a map shows at `uv` and depth: where three planes meet.

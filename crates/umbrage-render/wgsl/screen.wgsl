@@ -44,6 +44,28 @@ fn fs_visibility(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return vec4f(vec3f(select(Seen(0.0), seen, facing)), 1.0);
 }
 
+// A surface's grey, 0..1: as it is lit, so that shadows are seen; or as if the eye held a lamp. `at_pixel` is set before.
+fn lit_grey(here: Pixel) -> f32 {
+    return sqrt(dot(max(shade(here.surface, here.p_world), vec3f(0.0)), vec3f(0.21, 0.72, 0.07)));
+}
+
+fn lamp_grey(here: Pixel) -> f32 {
+    return 0.8 * saturate(dot(here.surface.shading_normal, towards_eye(here.p_world)));
+}
+
+// What lies under the faces of volumes, which are added to the first two channels: in the third 1 for a receiver, which
+// faces the light and lies in its reach, in shadow or not, and 2 for another surface; in the fourth its grey.
+@fragment
+fn fs_volumes(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let here = pixel(position);
+    at_pixel = vec2u(position.xy);
+    let arriving = incoming(lights[frame.shown_light], here.p_world);
+    let facing = min(dot(here.surface.normal, arriving.towards), dot(here.surface.shading_normal, arriving.towards));
+    let receives = facing > 0.0 && any(arriving.illuminance > vec3f(0.0)) && (here.surface.flags & UNLIT) == 0u;
+    let ground = select(vec2f(2.0, lamp_grey(here)), vec2f(1.0, min(lit_grey(here), 1.0)), receives);
+    return vec4f(0.0, 0.0, ground);
+}
+
 // The view of the shown light in which a point lies: of the light's first place.
 fn shown_view(light: Light, p_world: vec3f) -> UmbrageView {
     let first = u32(max(light.view, 0));

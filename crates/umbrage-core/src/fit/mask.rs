@@ -52,6 +52,8 @@ pub struct MaskView {
     pub size_texel: u32,
     /// Texels that stay empty on each side.
     pub border_texel: u32,
+    /// Box around the blocker: nothing that a ray of light meets before it is darkened.
+    pub bounds_world: Aabb,
 }
 
 /// What single precision may move a point by, as a share of its distance from the origin or of the mask's width: some ten
@@ -75,6 +77,12 @@ impl MaskView {
     /// `dot(depth_from_world, (p_world, 1))` is how far `p_world` lies along the axis, metres; below 0 behind the light.
     pub fn depth_from_world(&self) -> Vec4 {
         -self.light_from_world.row(2)
+    }
+
+    /// The light's place and 1, or the direction towards it and 0.
+    pub fn light_point_world(&self) -> Vec4 {
+        let world_from_light = self.light_from_world.inverse();
+        if self.perspective { world_from_light.w_axis } else { world_from_light.z_axis }
     }
 
     /// Where a receiver is.
@@ -172,7 +180,8 @@ pub fn fit_mask(
         bounds.corners().map(|p| p.as_dvec3().length()).into_iter().fold(origin.length(), f64::max);
     let extent = Extent::of(seen, perspective, magnitude_m)?;
     let (center, ratio) = extent.window(light, options)?;
-    view(origin, axes, perspective, &extent, (center, ratio), options)
+    let view = view(origin, axes, perspective, &extent, (center, ratio), options)?;
+    Ok(MaskView { bounds_world: bounds, ..view })
 }
 
 /// May light fall on any of the points?
@@ -299,6 +308,7 @@ fn view(
         texel: 2.0 * half / options.size_texel as f32,
         size_texel: options.size_texel,
         border_texel: options.border_texel,
+        bounds_world: Aabb::EMPTY,
     };
     let matrix = made.clip_from_world();
     if matrix.is_finite() && matrix.as_dmat4().determinant() != 0.0 {

@@ -18,6 +18,7 @@ pub use light::{VolumeCaster, VolumeLight, Winding};
 pub use mesh::{VolumeMesh, VolumeSource};
 pub use pipelines::{COUNT_FORMATS, VolumePipelines, choose_count_format};
 
+use umbrage_core::DEPTH;
 use umbrage_core::technique::volume::{Counting, Stencil};
 
 /// Which faces of a stencil that counts both ways in one draw are drawn.
@@ -67,6 +68,23 @@ impl Counted {
             Counting::DepthPass => Self::Before,
             Counting::Auto if eye_may_be_in_shadow => Self::Behind,
             Counting::Auto => Self::Before,
+        }
+    }
+
+    /// Are faces seen from outside counted up? The others are counted the other way. Before: what is entered through its front
+    /// is gone into; behind: what is left through its back was.
+    pub fn front_counts_up(self) -> bool {
+        self == Self::Before
+    }
+
+    /// The depth test that lets through what is counted, over the depth of the lit surfaces: faces at the depth of a surface are
+    /// behind it.
+    pub fn depth_compare(self) -> wgpu::CompareFunction {
+        match (self, DEPTH.is_reversed()) {
+            (Self::Before, true) => wgpu::CompareFunction::Greater,
+            (Self::Before, false) => wgpu::CompareFunction::Less,
+            (Self::Behind, true) => wgpu::CompareFunction::LessEqual,
+            (Self::Behind, false) => wgpu::CompareFunction::GreaterEqual,
         }
     }
 }

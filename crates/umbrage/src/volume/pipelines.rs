@@ -6,7 +6,6 @@ use super::{Counted, Faces, Winding};
 use crate::caster::unclipped;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
-use umbrage_core::DEPTH;
 use umbrage_core::technique::volume::Silhouette;
 use umbrage_core::wgsl::assemble;
 
@@ -77,11 +76,6 @@ fn face(counted: Counted, up: bool) -> wgpu::StencilFaceState {
         Counted::Before => (Keep, op),
     };
     wgpu::StencilFaceState { compare: wgpu::CompareFunction::Always, fail_op: Keep, depth_fail_op, pass_op }
-}
-
-/// Faces at the depth of a surface count as behind it: only what is nearer passes.
-fn nearer() -> wgpu::CompareFunction {
-    if DEPTH.is_reversed() { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
 }
 
 impl VolumePipelines {
@@ -166,9 +160,8 @@ impl VolumePipelines {
         faces: Faces,
         winding: Winding,
     ) -> wgpu::RenderPipeline {
-        // Behind: what is left through its back was entered. Before: the other way round.
-        let front = face(counted, counted == Counted::Before);
-        let back = face(counted, counted == Counted::Behind);
+        let front = face(counted, counted.front_counts_up());
+        let back = face(counted, !counted.front_counts_up());
         self.make(
             device,
             winding,
@@ -180,7 +173,8 @@ impl VolumePipelines {
             wgpu::DepthStencilState {
                 format,
                 depth_write_enabled: Some(false),
-                depth_compare: Some(nearer()),
+                // Both ways to count have one test, and differ in what they do with its outcome.
+                depth_compare: Some(Counted::Before.depth_compare()),
                 stencil: wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff },
                 bias: Default::default(),
             },
