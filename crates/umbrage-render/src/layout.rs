@@ -112,9 +112,22 @@ mod tests {
     use std::collections::BTreeMap;
     use std::mem::offset_of;
     use umbrage::core::layout::GpuView;
+    use umbrage::core::layout_mask::GpuMask;
 
     macro_rules! offsets {
         ($ty:ty, $($field:ident),*) => { (vec![$((stringify!($field), offset_of!($ty, $field))),*], size_of::<$ty>()) };
+    }
+
+    /// Members of a library module's first structure: core's own tests compare them with their mirrors.
+    fn library(module: &str) -> Vec<(&'static str, usize)> {
+        let text = umbrage::core::wgsl::assemble(&[module]).expect("known");
+        let module = naga::front::wgsl::parse_str(&text).expect("valid");
+        let members = module.types.iter().find_map(|(_, ty)| match &ty.inner {
+            naga::TypeInner::Struct { members, .. } => Some(members.clone()),
+            _ => None,
+        });
+        let members = members.expect("a struct");
+        members.iter().map(|m| (&*m.name.clone().expect("named").leak(), m.offset as usize)).collect()
     }
 
     #[test]
@@ -173,22 +186,8 @@ mod tests {
                     uv_rows
                 ),
             ),
-            ("UmbrageView", {
-                // Core's own test compares its members.
-                let module =
-                    naga::front::wgsl::parse_str(&umbrage::core::wgsl::assemble(&["view"]).expect("known"))
-                        .expect("valid");
-                let members = module.types.iter().find_map(|(_, ty)| match &ty.inner {
-                    naga::TypeInner::Struct { members, .. } => Some(members.clone()),
-                    _ => None,
-                });
-                let members = members.expect("a struct");
-                let names: Vec<_> = members
-                    .iter()
-                    .map(|m| (&*m.name.clone().expect("named").leak(), m.offset as usize))
-                    .collect();
-                (names, size_of::<GpuView>())
-            }),
+            ("UmbrageView", (library("view"), size_of::<GpuView>())),
+            ("UmbrageMask", (library("mask"), size_of::<GpuMask>())),
         ]);
         let mut seen = std::collections::BTreeSet::new();
         for (name, text) in shaders::all() {
