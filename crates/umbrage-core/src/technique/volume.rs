@@ -105,7 +105,6 @@ choices! {
             source: Some(BJORKE),
             modules: &["like_depth"],
             params: &[SOFT_PX, SOFT_M, LIKE_DEPTH],
-            ..EMPTY
         };
     }
 }
