@@ -125,7 +125,7 @@ fn draws(draws: Draws) -> &'static str {
         }
         Draws::Receivers => "objects beyond each blocker, once for each mask",
         Draws::Surfaces => {
-            "surfaces with material and light, visibility looked up inline (the reference renderer: over a G-buffer)"
+            "surfaces with material and light; visibility looked up inline, or in V on the screen where a pass wrote it (the reference renderer: over a G-buffer)"
         }
     }
 }
