@@ -19,9 +19,8 @@ pub const ROWS: &[Row] = &[
     Row {
         id: "N2",
         title: "Where a mask looks",
-        text: "Along the mean direction to the blocker's vertices, or to the middle of its box. It matters where the view \
-               reaches as far to both sides (`ratios=symmetric`), here in masks of 32x32; what is adaptive follows the \
-               blocker anyway.",
+        text: "Along the mean direction to the blocker's vertices, or to the middle of its box. What is adaptive follows the blocker anyway; what reaches as far to both sides (`ratios=symmetric`) loses a few \
+               texels by it. In masks of 32x32 both aims are equally near to the truth.",
         pictures: &[
             picture(
                 "n2-mean",
@@ -197,7 +196,8 @@ pub const ROWS: &[Row] = &[
         id: "N12",
         title: "Adaptive against fixed",
         text: "Masks of 256x256 texels for 21 blockers, of which the thin poles lose most when each mask is as wide as the \
-               light. Masks throw no shadow of a blocker on itself, which is most of what is called leak here.",
+               light. A blocker has no shadow on itself: leak and gap of the torus' scene are the pedestal's, whose top \
+               should darken its foot; the coarse texels of `fixed` have an edge band that reaches there.",
         pictures: &[
             picture(
                 "n12-adaptive",

@@ -31,7 +31,7 @@ pub const ROWS: &[Row] = &[
             ),
             picture(
                 "f7-eye-pass",
-                "the same, `counting=depth-pass`: wrong, and so by one all over",
+                "the same, `counting=depth-pass`: wrong, because counting starts in a shadow",
                 "builtin:contact --technique volume --set counting=depth-pass --light \
                  kind=directional,direction=0.2:-0.5:1 --camera \
                  position=-0.35:0.3:0.75,target=0.6:0.25:0.3,fov=60",
