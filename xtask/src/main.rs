@@ -56,8 +56,9 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "gallery",
-        takes: "[NAME]",
-        summary: "draw the pictures of docs/gallery and write docs/gallery.md (NAME: only those named so)",
+        takes: "[NAME | --rows ID,...] [--no-costs]",
+        summary: "draw the pictures of docs/gallery and write docs/gallery.md (NAME: only those named so; --rows: only \
+                  these; --no-costs: the machine is busy)",
         run: gallery::run,
     },
     Task {

@@ -27,6 +27,37 @@ pub fn repack(path: &Path) -> Done {
     write_rgb(path, width, height, &rgb)
 }
 
+/// In how many pixels two pictures differ.
+pub struct Difference {
+    pub pixels: usize,
+    /// All pixels.
+    pub of: usize,
+    /// The most that a channel differs by.
+    pub most: u8,
+}
+
+/// Compares two pictures that [`repack`] wrote.
+pub fn difference(a: &Path, b: &Path) -> Result<Difference, Fault> {
+    let (read_a, read_b) = (read_rgb(a)?, read_rgb(b)?);
+    if read_a.0 != read_b.0 {
+        return Err(failed(format!("{} and {} have two sizes", a.display(), b.display())));
+    }
+    let pixels = || read_a.1.chunks_exact(3).zip(read_b.1.chunks_exact(3));
+    let most = read_a.1.iter().zip(&read_b.1).map(|(a, b)| a.abs_diff(*b)).max();
+    Ok(Difference {
+        pixels: pixels().filter(|(a, b)| a != b).count(),
+        of: pixels().count(),
+        most: most.unwrap_or_default(),
+    })
+}
+
+/// Width and height, and the colours.
+fn read_rgb(path: &Path) -> Result<((u32, u32), Vec<u8>), Fault> {
+    let (width, height, rgba) = read_rgba(path)?;
+    let rgb = rgba.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect();
+    Ok(((width, height), rgb))
+}
+
 fn read_rgba(path: &Path) -> Result<(u32, u32, Vec<u8>), Fault> {
     let why = |e: &dyn std::fmt::Display| failed(format!("{} cannot be read: {e}", path.display()));
     let file = File::open(path).map_err(|e| why(&e))?;
@@ -59,7 +90,15 @@ mod tests {
         let before = read_rgba(&path).unwrap();
         repack(&path).unwrap();
         let after = read_rgba(&path).unwrap();
+        let other = path.with_extension("other.png");
+        write_rgb(&other, 4, 4, &rgb.iter().map(|x| if *x == 37 { 40 } else { *x }).collect::<Vec<_>>())
+            .unwrap();
+        let same = difference(&path, &path).unwrap();
+        let differs = difference(&path, &other).unwrap();
         std::fs::remove_file(&path).unwrap();
+        std::fs::remove_file(&other).unwrap();
+        assert_eq!((same.pixels, same.of, same.most), (0, 16, 0));
+        assert_eq!((differs.pixels, differs.of, differs.most), (1, 16, 3));
         assert_eq!(before, after);
         assert_eq!(after.2[..8], [0, 37, 74, 255, 111, 148, 185, 255]);
     }

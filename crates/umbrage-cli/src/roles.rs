@@ -4,6 +4,9 @@ use crate::args::SceneArgs;
 use crate::fault::{Fault, suggest};
 use umbrage_scene::{Instance, Roles, Scene};
 
+/// So many objects are named to somebody who names none.
+const FEW: usize = 8;
+
 /// Takes roles from the objects that are named. What they lack by the file they keep lacking.
 ///
 /// # Errors
@@ -45,7 +48,22 @@ fn unknown(scene: &Scene, flag: &str, name: &str) -> Fault {
     let meshes = scene.meshes.iter().map(|mesh| mesh.name.as_str());
     let near = suggest(name, nodes.chain(meshes).filter(|name| !name.is_empty()));
     let count = scene.objects();
-    Fault::WrongUse(format!("{flag}: there is no object `{name}`{near}; there are {count}, from 0 on"))
+    let few = few_names(scene);
+    Fault::WrongUse(format!("{flag}: there is no object `{name}`{near}; there are {count}, from 0 on{few}"))
+}
+
+/// The first of the objects' names, as the end of a sentence; nothing where none has one.
+fn few_names(scene: &Scene) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for name in scene.instances.iter().map(|instance| instance.name.as_str()) {
+        if !name.is_empty() && !names.contains(&name) {
+            names.push(name);
+        }
+        if names.len() > FEW {
+            return format!(": {}, ...", names[..FEW].join(", "));
+        }
+    }
+    if names.is_empty() { String::new() } else { format!(": {}", names.join(", ")) }
 }
 
 #[cfg(test)]
@@ -89,7 +107,8 @@ mod tests {
     fn an_unknown_object_is_wrong_use_with_a_suggestion() {
         for (name, word) in [
             ("low bix", "did you mean `low box`?"),
-            ("99", "from 0 on"),
+            ("99", "from 0 on: ground, low box, high box, "),
+            ("99", "small ball, wall 2 permille, wall 5 permille, ..."),
             ("", "from 0 on"),
             ("-1", "no object `-1`"),
         ] {

@@ -26,7 +26,7 @@ impl Pose {
     /// Nothing plays: worth a warning, and an error where something was to play by name.
     pub(crate) fn without_animations(&self, spec: &str, scene: &mut Scene) -> Result<(), SceneError> {
         let Some(name) = &self.animation else {
-            scene.warnings.push("there is no animation in it, so that it is the same at all times".into());
+            scene.warnings.push("there is no animation in it: its nodes are the same at all times".into());
             return Ok(());
         };
         let name: String = name.chars().take(60).map(|c| if c.is_control() { ' ' } else { c }).collect();

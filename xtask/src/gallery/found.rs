@@ -1,6 +1,7 @@
 //! What the commands said: quoted words, measures, listings.
 
 use super::{Listing, Measure, Picture};
+use crate::picture::Difference;
 use crate::process::{self, Done, Fault, failed};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -15,8 +16,12 @@ pub struct Found {
     lines: HashMap<&'static str, String>,
     /// By a listing's arguments.
     listings: HashMap<&'static str, String>,
+    /// By two pictures' files.
+    differences: HashMap<[&'static str; 2], String>,
     /// What measured.
     pub adapter: String,
+    /// Are costs left out?
+    pub no_costs: bool,
 }
 
 impl Found {
@@ -32,11 +37,26 @@ impl Found {
         self.listings.get(listing.arguments).map(String::as_str)
     }
 
+    pub fn difference_of(&self, pair: [&'static str; 2]) -> Option<&str> {
+        self.differences.get(&pair).map(String::as_str)
+    }
+
+    /// Keeps how much two pictures differ.
+    pub fn compare(&mut self, pair: [&'static str; 2], difference: Difference) {
+        let [a, b] = pair;
+        let Difference { pixels, of, most } = difference;
+        let said = match pixels {
+            0 => format!("`{a}` and `{b}` are the same picture: none of {of} pixels differs."),
+            _ => format!("`{a}` and `{b}` differ in {pixels} of {of} pixels, by {most} of 255 at most."),
+        };
+        self.differences.insert(pair, said);
+    }
+
     /// Draws a picture and keeps what is quoted of its JSON.
     pub fn quote(&mut self, picture: &Picture, command: &mut Command) -> Done {
         eprintln!("$ {}", process::typed(command));
         let said = json(command)?;
-        let quotes: Vec<_> = picture.quoted.iter().flat_map(|key| quotes(key, &said[*key])).collect();
+        let quotes: Vec<_> = picture.quoted.iter().flat_map(|key| quotes(key, within(&said, key))).collect();
         if quotes.is_empty() {
             return Err(failed(format!(
                 "{}: the command says nothing of {:?}",
@@ -61,13 +81,13 @@ impl Found {
         let percent = |key| number(key).map(|share| 100.0 * share);
         // No contact in the picture: no gap.
         let gap = of["gap_m"].as_f64().map_or("-".to_owned(), |metres| format!("{:.1}", 1000.0 * metres));
+        let cost = if self.no_costs { "-".to_owned() } else { format!("{:.1}", number("cost_ms")?) };
         let line = format!(
-            "| {} | {:.3} | {:.3} | {gap} | {:.4} | {:.1} | {:.2} |",
+            "| {} | {:.3} | {:.3} | {gap} | {:.4} | {cost} | {:.2} |",
             measure.label,
             percent("acne")?,
             percent("leak")?,
             number("rmse")?,
-            number("cost_ms")?,
             number("memory_bytes")? / f64::from(1 << 20),
         );
         self.lines.insert(measure.arguments, line);
@@ -93,10 +113,20 @@ fn json(command: &mut Command) -> Result<Value, Fault> {
         .map_err(|e| failed(format!("`{}` prints no JSON: {e}", process::typed(command))))
 }
 
-/// As the page shows it: words as they are, anything else with its name.
+/// What `a.b` names of a command's JSON.
+fn within<'a>(said: &'a Value, key: &str) -> &'a Value {
+    key.split('.').fold(said, |of, key| &of[key])
+}
+
+/// As the page shows it: words as they are, passes that draw with their triangles, anything else with its name.
 fn quotes(key: &str, value: &Value) -> Vec<String> {
     match value {
         Value::Null => Vec::new(),
+        Value::Array(passes) if key == "passes" => {
+            let told = |pass: &Value| Some((pass["name"].as_str()?.to_owned(), pass["triangles"].as_u64()?));
+            let drawn = passes.iter().filter_map(told).filter(|(_, triangles)| *triangles > 0);
+            drawn.map(|(name, triangles)| format!("{name}: {triangles} triangles")).collect()
+        }
         Value::Array(words) if words.iter().all(Value::is_string) => {
             words.iter().filter_map(Value::as_str).map(|text| format!("{key}: {text}")).collect()
         }
@@ -131,6 +161,9 @@ mod tests {
     fn words_are_quoted_one_by_one_and_numbers_as_they_are() {
         assert_eq!(quotes("warnings", &json!(["a", "b"])), ["warnings: a", "warnings: b"]);
         assert_eq!(quotes("maps_drawn", &json!(3)), ["maps_drawn: 3"]);
+        assert_eq!(quotes("a.b", within(&json!({"a": {"b": 7}}), "a.b")), ["a.b: 7"]);
+        let passes = json!([{"name": "mask 0.2", "triangles": 12}, {"name": "found", "triangles": 0}]);
+        assert_eq!(quotes("passes", &passes), ["mask 0.2: 12 triangles"]);
         assert!(quotes("none", &Value::Null).is_empty() && quotes("none", &json!([])).is_empty());
     }
 }

@@ -4,12 +4,15 @@ mod beyond;
 mod effects;
 mod hardware;
 mod mainstream;
+mod masks;
+mod volumes;
 
 use super::{Measure, Picture, Row};
 
 /// All rows, in the order of the page.
 pub fn all() -> impl Iterator<Item = &'static Row> {
-    [hardware::ROWS, mainstream::ROWS, effects::ROWS, beyond::ROWS].into_iter().flatten()
+    let rows = [hardware::ROWS, mainstream::ROWS, effects::ROWS, volumes::ROWS, masks::ROWS, beyond::ROWS];
+    rows.into_iter().flatten()
 }
 
 const fn picture(file: &'static str, caption: &'static str, arguments: &'static str) -> Picture {
