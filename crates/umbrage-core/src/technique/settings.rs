@@ -1,5 +1,6 @@
 //! A technique with its parameters, as a user asked for it.
 
+use super::choices::Choice;
 use super::combination::Combination;
 use super::volume::Soften;
 use super::{Family, Method, Param, ParamDefault, Technique, find};
@@ -185,10 +186,18 @@ impl Settings {
     fn unknown_key(&self, key: &str) -> SettingError {
         let mut known: Vec<&str> = self.params().map(|p| p.name).collect();
         known.extend(self.method.rows().iter().map(|(key, _)| *key));
+        // A parameter of a choice that was not made.
+        let tables = self.method.family().tables();
+        let has = |row: &&&Choice| row.params.iter().any(|param| param.name == key);
+        let elsewhere = tables.iter().find_map(|table| Some((table.key, table.rows.iter().find(has)?.id)));
+        let suggestion = match elsewhere {
+            Some((table, id)) => format!("; it comes with {table}={id}"),
+            None => suggest(key, known.iter().copied()),
+        };
         SettingError::UnknownKey {
             technique: self.technique.id,
             key: key.to_owned(),
-            suggestion: suggest(key, known.iter().copied()),
+            suggestion,
             known: if known.is_empty() { "none".to_owned() } else { known.join(", ") },
         }
     }
@@ -270,6 +279,8 @@ mod tests {
         assert!(refused("linear", &[("map_sise", "1")]).contains("did you mean `map_size`?"));
         assert!(refused("linear", &[("filter", "liner")]).contains("did you mean `linear`?"));
         assert!(refused("unshadowed", &[("filter", "linear")]).contains("it has none"));
+        assert!(refused("volume", &[("soft_px", "9")]).contains("it comes with soften=blur"));
+        assert!(refused("linear", &[("width", "9")]).contains("it comes with filter=pcf"));
         for bad in ["0", "-1", "20000", "2.5", "NaN", "inf", "big", ""] {
             let message = refused("linear", &[("map_size", bad)]);
             assert!(message.contains("whole number from 1 to 16384 (texel)"), "{bad}: {message}");
