@@ -169,7 +169,7 @@ impl Masks {
             }],
         });
         let subtract = (choices.receivers == Receivers::Subtractive).then(|| {
-            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V);
+            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V, deform);
             let list = uniform("masks apart", most as u64 * u64::from(SubtractPipelines::STRIDE));
             let receiving: Vec<_> =
                 (0..lights.max(1)).map(|_| uniform("receiving", size_of::<GpuReceiving>() as u64)).collect();
@@ -320,7 +320,13 @@ impl Masks {
         subtract.draws.clear();
         for (index, range) in self.of_light.iter().enumerate() {
             let light = light_point_world(&world.lights[index].light);
-            let receiving = GpuReceiving { clip_from_world, eye: eye.extend(eye_w), light };
+            let receiving = GpuReceiving {
+                clip_from_world,
+                eye: eye.extend(eye_w),
+                light,
+                time_s: world.time_s,
+                pad: [0.0; 3],
+            };
             gpu.queue.write_buffer(&subtract.receiving[index], 0, bytemuck::bytes_of(&receiving));
             let mut draws = Vec::new();
             for number in range.clone() {
