@@ -61,7 +61,8 @@ fn blockers() -> Vec<(String, Scene)> {
     let mut all = Vec::new();
     all.extend(named("torus", builtin("torus"), &|mesh| mesh.name == "torus"));
     let mut knots = builtin("knots");
-    let knot = knots.instances.iter().position(|i| knots.meshes[i.mesh].indices.len() > 900).expect("a knot");
+    let knot =
+        knots.instances.iter().position(|i| knots.meshes[i.mesh].name.contains("knot")).expect("a knot");
     knots.instances = vec![knots.instances[knot].clone()];
     all.extend(named("knot", knots, &|_| true));
     for (name, path) in [("suzanne", "suzanne/Suzanne.gltf"), ("fox", "fox/Fox.glb")] {
@@ -150,7 +151,7 @@ fn masks_are_as_right_as_maps_for_half_of_the_triangles() {
         let rays = Rays::new(&scene).expect("rays");
         let judge = Judge::new(&gpu, &scene, &rays);
         let dark = judge.beyond.iter().filter(|i| judge.truth.judged.truth()[**i] == Vec3::ZERO).count();
-        assert!(dark > 400, "{name}: {dark} pixels beyond the blocker are dark");
+        assert!(dark > 150, "{name}: {dark} pixels beyond the blocker are dark");
         let linear = judge.judge("linear", &[("map_size", TEXELS)]);
         let show = |technique: &str, found: &Judged| {
             let cost = &found.cost;
@@ -198,7 +199,8 @@ fn adapting_puts_more_texels_on_the_blocker_and_each_geometry_has_its_price() {
         );
         assert!(fixed.0 > adaptive.0, "{name}: fewer texels, more error");
         assert!(2 * adaptive.2 <= full.2, "{name}: triangles of the outline");
-        // Half a texel is what it may be off by.
-        assert!(adaptive.0 <= 1.15 * full.0, "{name}: {} {}", adaptive.0, full.0);
+        // A fit to a box, a reduced outline: none is worse than a map of that resolution.
+        let linear = judge.judge("linear", &[("map_size", "256")]).rmse;
+        assert!(adaptive.0.max(symmetric.0).max(boxed.0) <= 1.2 * linear, "{name}: linear has {linear}");
     }
 }

@@ -66,14 +66,21 @@ struct Content {
 }
 
 /// A mesh of a blocker.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Part {
     mesh: usize,
     /// Of the mesh's vertices.
     version: u64,
-    /// Of its outline.
+    /// Of its outline, which follows from the view, the mesh and its place.
     indices: Range<u32>,
     placed: GpuInstance,
+}
+
+impl PartialEq for Part {
+    /// Where in a buffer an outline stands makes no other mask.
+    fn eq(&self, other: &Self) -> bool {
+        (self.mesh, self.version, &self.placed) == (other.mesh, other.version, &other.placed)
+    }
 }
 
 /// One mask.
@@ -258,7 +265,17 @@ impl Masks {
                     break;
                 }
                 let points = self.outlines.fit_points_world(&parts, self.choices.fit_to);
-                match fit_mask(&light.light, points.iter().copied(), &options) {
+                let fitted = fit_mask(&light.light, points.iter().copied(), &options);
+                // Where the points are dense at one end, the other may lie too far aside. What `unmaskable` lets through has room
+                // around the middle of its box.
+                let fitted = fitted.or_else(|why| match why {
+                    MaskError::Unreached => Err(why),
+                    _ => {
+                        let whole = parts.iter().fold(Aabb::EMPTY, |all, part| all.union(&part.bounds_world));
+                        fit_mask(&light.light, whole.corners().into_iter(), &options)
+                    }
+                });
+                match fitted {
                     Ok(view) => {
                         let content = self.content(&view, &parts, &light.light, time_s, &world.mesh_versions);
                         let at = placed.len() as u32;
@@ -450,7 +467,8 @@ impl Masks {
 }
 
 /// For each instance: is it a part of an object that a light cannot mask, though it shines on it? With the reason of the first.
-pub(crate) fn unmaskable(scene: &Scene, settings: &Settings) -> (Vec<bool>, Option<String>) {
+/// Vertices may be moved by `reach_m`.
+pub(crate) fn unmaskable(scene: &Scene, settings: &Settings, reach_m: f32) -> (Vec<bool>, Option<String>) {
     let mut by_map = vec![false; scene.instances.len()];
     let mut reason = None;
     let Method::Mask(choices) = settings.method else { return (by_map, reason) };
@@ -461,6 +479,7 @@ pub(crate) fn unmaskable(scene: &Scene, settings: &Settings) -> (Vec<bool>, Opti
         .instances
         .iter()
         .map(|placed| scene.meshes[placed.mesh].bounds.transformed(&placed.world_from_object))
+        .map(|bounds| Aabb { min: bounds.min - reach_m, max: bounds.max + reach_m })
         .collect();
     let mut objects: Vec<Vec<usize>> = vec![Vec::new(); scene.objects() as usize];
     for (number, placed) in scene.instances.iter().enumerate().filter(|(_, placed)| placed.roles.blocker) {

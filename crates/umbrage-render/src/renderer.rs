@@ -370,7 +370,7 @@ fn is_on_screen(settings: &Settings) -> bool {
 fn by_map(scene: &Scene, options: &RenderOptions) -> (Vec<bool>, Option<String>) {
     let is_volume = matches!(options.settings.method, Method::Volume(_));
     if !is_volume {
-        return unmaskable(scene, &options.settings);
+        return unmaskable(scene, &options.settings, options.deform_reach_m);
     }
     let is_by_map =
         |placed: &Instance| options.deform.is_some() || has_holes(scene, &scene.meshes[placed.mesh]);

@@ -410,6 +410,37 @@ fn what_is_not_drawn_from_behind_darkens_nothing() {
     assert!(most_off(&single.v, &subtractive.v) < 2.5 * EIGHT_BITS);
 }
 
+/// Row N4: of a closed blocker one side is drawn, which has the outline of all of it.
+#[test]
+fn one_side_of_a_closed_blocker_covers_what_all_of_it_does() {
+    let Some(gpu) = gpu() else { return };
+    for name in ["torus", "columns", "contact"] {
+        let scene = builtin(name);
+        let spot = scene.lights[0].light;
+        for light in [spot, sun_of(&scene), Light { kind: LightKind::Point, ..spot }] {
+            let scene = with_light(scene.clone(), light);
+            let shot = |pairs: &[(&str, &str)]| {
+                let options = RenderOptions {
+                    size: UVec2::splat(SIDE),
+                    view: View::Visibility,
+                    ..RenderOptions::new(settings("mask", pairs))
+                };
+                let mut renderer =
+                    Renderer::new(&gpu, &scene, &scene.cameras[0].camera, options).expect("a renderer");
+                let report = renderer.frame(Measure::Frame).expect("a frame");
+                let masks = report.passes.iter().filter(|pass| pass.name.starts_with("mask "));
+                (renderer.visibility().expect("V"), masks.map(|pass| pass.work.triangles).sum::<u64>())
+            };
+            // So little that next to nothing is left out.
+            let (side, few) = shot(&[("outline_texel", "0.001")]);
+            let (all, many) = shot(&[("outline", "full")]);
+            let off = side.iter().zip(&all).filter(|(a, b)| (*a - *b).abs() > 2.0 * EIGHT_BITS).count();
+            println!("{name} {:?}: {few} triangles of {many}, {off} pixels off", light.kind);
+            assert!(off <= 2 && few * 3 < many * 2, "{name} {:?}: {few} of {many}, {off}", light.kind);
+        }
+    }
+}
+
 /// A function that moves vertices moves blockers, their masks, and receivers wherever they are drawn.
 #[test]
 fn deformed_blockers_and_receivers_agree_with_a_map() {
