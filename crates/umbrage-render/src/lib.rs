@@ -32,6 +32,7 @@ mod readback;
 mod renderer;
 mod screen_v;
 mod shaders;
+mod shadowed;
 mod surfaces;
 mod targets;
 mod textures;

@@ -10,9 +10,11 @@ use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::outlines::Outlines;
 use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::shadowed::Rect;
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
-use glam::Mat4;
+use glam::{Mat4, UVec2};
+use std::mem::offset_of;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
@@ -31,6 +33,14 @@ use umbrage_scene::{Mesh, Scene};
 
 /// How many masks a picture may have: they stand in a uniform.
 pub const MOST_MASKS: usize = 256;
+/// Mirrors `MaskList` of `shaders.rs`.
+#[repr(C)]
+pub struct GpuMaskList {
+    pub masks: [GpuMask; MOST_MASKS],
+    /// The first pixel that each may darken and the one past the last, 16 bits a number, and the object that it is of.
+    pub seen: [[u32; 4]; MOST_MASKS],
+}
+
 /// Memory that masks may take, bytes.
 const MOST_BYTES: u64 = 512 << 20;
 
@@ -91,6 +101,8 @@ struct OneMask {
     wanted: Arc<Content>,
     /// Its first instance in the buffer.
     first: u32,
+    /// The pixels that it may darken.
+    on_screen: Option<Rect>,
 }
 
 /// What takes masks away from receivers, pass by pass.
@@ -207,7 +219,7 @@ impl Masks {
             matrices,
             view_group,
             instances: Growing::new(device, "blockers", wgpu::BufferUsages::VERTEX, 0),
-            list: uniform("masks", (MOST_MASKS * size_of::<GpuMask>()) as u64),
+            list: uniform("masks", size_of::<GpuMaskList>() as u64),
             masks: Vec::new(),
             held: vec![None; most],
             of_light: Vec::new(),
@@ -246,7 +258,7 @@ impl Masks {
     }
 
     /// Fits all masks to the world. What could not be fitted is said.
-    pub fn tell(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4) -> Vec<String> {
+    pub fn tell(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4, size: UVec2) -> Vec<String> {
         let mut warnings = Vec::new();
         let options = mask_options(&self.choices, self.size_texel, &world.items.whole());
         let lights = world.lights.len().min(crate::MAX_LIGHTS);
@@ -280,7 +292,9 @@ impl Masks {
                         let content = self.content(&view, &parts, &light.light, time_s, &world.mesh_versions);
                         let at = placed.len() as u32;
                         placed.extend(content.parts.iter().map(|part| part.placed));
-                        self.masks.push(OneMask { view, object, wanted: Arc::new(content), first: at });
+                        let on_screen = world.items.mask_on_screen(&view, object, clip_from_world, size);
+                        let wanted = Arc::new(content);
+                        self.masks.push(OneMask { view, object, wanted, first: at, on_screen });
                     }
                     Err(MaskError::Unreached) => {}
                     Err(why) => warnings.push(format!("light {index} has no mask of object {object}: {why}")),
@@ -301,7 +315,14 @@ impl Masks {
             .map(|(layer, mask)| GpuMask::new(&mask.view, layer, Some(mask.object)))
             .collect();
         gpu.queue.write_buffer(&self.list, 0, bytemuck::cast_slice(&list));
-        self.tell_receivers(gpu, world, clip_from_world, &list);
+        let seen = |mask: &OneMask| {
+            let rect = mask.on_screen.unwrap_or(Rect { min: UVec2::ZERO, max: UVec2::ZERO });
+            let corner = |at: UVec2| at.x | (at.y << 16);
+            [corner(rect.min), corner(rect.max), mask.object, 0]
+        };
+        let seen: Vec<[u32; 4]> = self.masks.iter().map(seen).collect();
+        gpu.queue.write_buffer(&self.list, offset_of!(GpuMaskList, seen) as u64, bytemuck::cast_slice(&seen));
+        self.tell_receivers(gpu, world, (clip_from_world, size), &list);
         warnings
     }
 
@@ -324,7 +345,13 @@ impl Masks {
     }
 
     /// Lists the receivers of each mask, where they are drawn once more.
-    fn tell_receivers(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4, list: &[GpuMask]) {
+    fn tell_receivers(
+        &mut self,
+        gpu: &Gpu,
+        world: &World,
+        (clip_from_world, size): (Mat4, UVec2),
+        list: &[GpuMask],
+    ) {
         let Some(subtract) = &mut self.subtract else { return };
         let stride = SubtractPipelines::STRIDE as usize;
         let mut bytes = vec![0u8; list.len() * stride];
@@ -348,8 +375,8 @@ impl Masks {
             let mut draws = Vec::new();
             for number in range.clone() {
                 let mask = &self.masks[number];
-                let batches =
-                    world.items.mask_receivers(&mask.view, mask.object, clip_from_world, &mut instances);
+                let eye = (clip_from_world, size);
+                let batches = world.items.mask_receivers(&mask.view, mask.object, eye, &mut instances);
                 draws.extend(batches.into_iter().map(|batch| (number, batch)));
             }
             subtract.draws.push(draws);
@@ -357,11 +384,12 @@ impl Masks {
         subtract.instances.write(&gpu.device, &gpu.queue, bytemuck::cast_slice(&instances));
     }
 
-    /// The masks that do not hold what they should; all when nothing is reused.
+    /// The masks whose shadow may be seen and that do not hold what they should; all that may be seen when nothing is reused.
     pub fn stale(&self, reuse: bool) -> Vec<usize> {
         let is_stale =
             |number: &usize| !reuse || self.held[*number].as_ref() != Some(&self.masks[*number].wanted);
-        (0..self.masks.len()).filter(is_stale).collect()
+        let is_seen = |number: &usize| self.masks[*number].on_screen.is_some();
+        (0..self.masks.len()).filter(is_seen).filter(is_stale).collect()
     }
 
     /// The passes that draw these masks, then those that take them from receivers.
@@ -440,6 +468,8 @@ impl Masks {
                         }
                         recorded.set_pipeline(subtract.pipelines.of(shadowed));
                         for (number, batch) in draws {
+                            let (at, size) = (batch.on_screen.min, batch.on_screen.size());
+                            recorded.set_scissor_rect(at.x, at.y, size.x, size.y);
                             let mesh = &self.geometry.meshes[batch.mesh];
                             let offset = *number as u32 * SubtractPipelines::STRIDE;
                             recorded.set_bind_group(0, &subtract.groups[light], &[offset]);

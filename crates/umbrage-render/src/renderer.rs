@@ -291,7 +291,7 @@ impl<'a> Renderer<'a> {
         let Some(masks) = &mut self.masks else { return Vec::new() };
         let objects = world.items.objects(frustum, eye.position);
         self.objects.write(&self.gpu.device, &self.gpu.queue, bytemuck::cast_slice(&objects));
-        let warnings = masks.tell(self.gpu, world, eye.clip_from_world);
+        let warnings = masks.tell(self.gpu, world, eye.clip_from_world, self.options.size);
         for (index, light) in lights.iter_mut().enumerate() {
             let range = masks.of_light(index);
             light.masks = range.start as u32 | ((range.len() as u32) << 16);

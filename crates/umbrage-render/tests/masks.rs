@@ -410,6 +410,44 @@ fn what_is_not_drawn_from_behind_darkens_nothing() {
     assert!(most_off(&single.v, &subtractive.v) < 2.5 * EIGHT_BITS);
 }
 
+/// Masks are looked up only in the pixels that their shadows may be in: from wherever the eye looks none is cut off.
+#[test]
+fn shadows_are_whole_from_everywhere() {
+    let Some(gpu) = gpu() else { return };
+    let scene = builtin("columns");
+    let spot = scene.lights[0].light;
+    for (eye, target) in [
+        (Vec3::new(-7.5, 1.7, 1.4), Vec3::new(5.0, 1.2, 1.4)),
+        (Vec3::new(0.0, 0.6, 0.2), Vec3::new(3.0, 0.0, -2.0)),
+        (Vec3::new(9.0, 0.4, -4.0), Vec3::new(0.0, 0.3, 2.0)),
+        (Vec3::new(0.5, 14.0, 0.3), Vec3::new(0.0, 0.0, 0.0)),
+        (Vec3::new(-2.0, 3.0, 8.0), Vec3::new(4.0, 0.0, -9.0)),
+    ] {
+        for light in [spot, sun_of(&scene), Light { kind: LightKind::Point, ..spot }] {
+            let mut scene = with_light(scene.clone(), light);
+            scene.cameras[0].camera = Camera::look_at(eye, target, 1.0, 0.1, 60.0);
+            let volume = found(&gpu, &scene, "volume", &[]);
+            for technique in BOTH {
+                let masked = found(&gpu, &scene, technique, &[("mask_size", "1024"), ("outline", "full")]);
+                let floor = masked.surfaces.iter().zip(masked.v.iter().zip(&volume.v));
+                let floor: Vec<_> = floor.filter(|(s, _)| s.is_some_and(|s| s.p_world.y < 1e-3)).collect();
+                let off = floor.iter().filter(|(_, (a, b))| (*a - *b).abs() > 0.6).count();
+                let dark = floor.iter().filter(|(_, (_, b))| **b < 0.5).count();
+                println!(
+                    "{technique} {:?} from {eye}: {off} off, {dark} dark of {}",
+                    light.kind,
+                    floor.len()
+                );
+                assert!(
+                    dark > 20 && off * 25 < dark.max(100),
+                    "{technique} {:?} {eye}: {off} of {dark}",
+                    light.kind
+                );
+            }
+        }
+    }
+}
+
 /// Row N4: of a closed blocker one side is drawn, which has the outline of all of it.
 #[test]
 fn one_side_of_a_closed_blocker_covers_what_all_of_it_does() {
