@@ -3,7 +3,7 @@
 use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
-use crate::shadowed::{Rect, Shadow};
+use crate::shadowed::{ReceiverBatch, Rect, Shadow};
 use glam::{Mat4, UVec2, Vec3, Vec4};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -68,17 +68,6 @@ pub struct MaskPart {
     pub world_from_object: Mat4,
     /// Box around it.
     pub bounds_world: Aabb,
-}
-
-/// Receivers of a mask: a mesh and consecutive instances.
-#[derive(Clone, Debug)]
-pub(crate) struct ReceiverBatch {
-    /// Index of the mesh.
-    pub mesh: usize,
-    /// Instances: first and past the last.
-    pub instances: std::ops::Range<u32>,
-    /// The pixels that may lie in the shadow.
-    pub on_screen: Rect,
 }
 
 /// Is an instance flat, and nothing behind it? `boxes` are those of all instances, world space.

@@ -18,6 +18,7 @@ mod heat;
 mod layout;
 mod lights;
 mod maps;
+mod maskable;
 mod masks;
 mod materials;
 mod moving;

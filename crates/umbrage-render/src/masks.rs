@@ -1,16 +1,17 @@
 //! Projective masks of a scene's lights: which objects throw one, what each is drawn with, and which have to be drawn anew.
 
-use crate::draw_list::{MaskPart, ReceiverBatch, Work};
-use crate::geometry::{Geometry, caster_cutoff};
+use crate::draw_list::{MaskPart, Work};
+use crate::geometry::Geometry;
 use crate::gpu::Gpu;
 use crate::layout::GpuInstance;
 use crate::lights::eye_of;
 use crate::maps::Growing;
+use crate::maskable::{mask_options, most_of_light};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::outlines::Outlines;
 use crate::screen_v::{SCREEN_V, ScreenV};
-use crate::shadowed::Rect;
+use crate::shadowed::{ReceiverBatch, Rect};
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
 use glam::{Mat4, UVec2};
@@ -19,12 +20,12 @@ use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
 use umbrage::caster::{GpuCasterView, NO_DEFORM};
-use umbrage::core::fit::{MaskError, MaskOptions, MaskView, fit_mask};
+use umbrage::core::fit::{MaskError, MaskView, fit_mask};
 use umbrage::core::layout_mask::GpuMask;
-use umbrage::core::technique::mask::{Aim, Lookup, Mask, Ratios, Receivers};
-use umbrage::core::technique::{Method, Settings};
+use umbrage::core::technique::Method;
+use umbrage::core::technique::mask::{Lookup, Mask, Receivers};
 use umbrage::core::volume::light_point_world;
-use umbrage::core::{Aabb, Light, fit};
+use umbrage::core::{Aabb, Light};
 use umbrage::mask::{
     GpuReceiving, MaskMaps, MaskPipelines, Shadowed, SubtractPipelines, mask_sampler, record_mask_pass,
     record_subtract,
@@ -39,33 +40,6 @@ pub struct GpuMaskList {
     pub masks: [GpuMask; MOST_MASKS],
     /// The first pixel that each may darken and the one past the last, 16 bits a number, and the object that it is of.
     pub seen: [[u32; 4]; MOST_MASKS],
-}
-
-/// Memory that masks may take, bytes.
-const MOST_BYTES: u64 = 512 << 20;
-
-/// How a technique fits its masks, in a scene of that box.
-pub fn mask_options(choices: &Mask, size_texel: u32, scene_world: &Aabb) -> MaskOptions {
-    MaskOptions {
-        size_texel,
-        frame: match choices.aim {
-            Aim::Mean => fit::Frame::Mean,
-            Aim::Box => fit::Frame::Box,
-        },
-        ratios: match choices.ratios {
-            Ratios::Adaptive => fit::Ratios::Adaptive,
-            Ratios::Symmetric => fit::Ratios::Symmetric,
-            Ratios::Fixed => fit::Ratios::Fixed,
-        },
-        fixed_half_m: scene_world.radius().max(1e-6),
-        ..MaskOptions::default()
-    }
-}
-
-/// Most masks of a light, when so many lights have some of such a size.
-pub fn most_of_light(lights: usize, size_texel: u32) -> usize {
-    let of_memory = (MOST_BYTES / (u64::from(size_texel) * u64::from(size_texel)).max(1)) as usize;
-    (MOST_MASKS.min(of_memory.max(1)) / lights.max(1)).max(1)
 }
 
 /// All that a mask depends on.
@@ -494,63 +468,4 @@ impl Masks {
         let v = self.subtract.as_ref().map_or(0, |subtract| subtract.v.memory_bytes());
         self.maps.memory_bytes() + self.outlines.memory_bytes() + v
     }
-}
-
-/// For each instance: is it a part of an object that a light cannot mask, though it shines on it? With the reason of the first.
-/// Vertices may be moved by `reach_m`.
-pub(crate) fn unmaskable(scene: &Scene, settings: &Settings, reach_m: f32) -> (Vec<bool>, Option<String>) {
-    let mut by_map = vec![false; scene.instances.len()];
-    let mut reason = None;
-    let Method::Mask(choices) = settings.method else { return (by_map, reason) };
-    let size_texel = settings.value("mask_size").map_or(512, |size| size as u32);
-    let options = mask_options(&choices, size_texel, &scene.bounds());
-    let lights = scene.lights.len().min(crate::MAX_LIGHTS);
-    let boxes: Vec<Aabb> = scene
-        .instances
-        .iter()
-        .map(|placed| scene.meshes[placed.mesh].bounds.transformed(&placed.world_from_object))
-        .map(|bounds| Aabb { min: bounds.min - reach_m, max: bounds.max + reach_m })
-        .collect();
-    let mut objects: Vec<Vec<usize>> = vec![Vec::new(); scene.objects() as usize];
-    for (number, placed) in scene.instances.iter().enumerate().filter(|(_, placed)| placed.roles.blocker) {
-        objects[placed.object as usize].push(number);
-    }
-    let box_of = |object: &[usize]| object.iter().fold(Aabb::EMPTY, |all, i| all.union(&boxes[*i]));
-    let is_idle = |light: &Light, object: &[usize]| {
-        object.iter().all(|number| crate::draw_list::is_flat_and_idle(scene, light, *number, &boxes))
-    };
-    let mut wanted = 0;
-    objects.sort_by(|a, b| box_of(b).radius().total_cmp(&box_of(a).radius()));
-    for object in objects.iter().filter(|object| !object.is_empty()) {
-        let active: Vec<&Light> = scene
-            .lights
-            .iter()
-            .take(lights)
-            .map(|placed| &placed.light)
-            .filter(|light| !is_idle(light, object))
-            .collect();
-        let failed = active.iter().find_map(|light| {
-            let fitted = fit_mask(light, box_of(object).corners().into_iter(), &options);
-            fitted.err().filter(|why| *why != MaskError::Unreached)
-        });
-        let too_many = wanted >= most_of_light(lights, size_texel);
-        let why = failed.map(|why| why.to_string()).or_else(|| {
-            too_many.then(|| {
-                format!("a light has {} masks of this size at most", most_of_light(lights, size_texel))
-            })
-        });
-        match why {
-            Some(why) => {
-                object.iter().for_each(|number| by_map[*number] = true);
-                reason.get_or_insert(why);
-            }
-            None => wanted += usize::from(!active.is_empty()),
-        }
-    }
-    (by_map, reason)
-}
-
-/// Is a mesh one whose triangles have contours inside of them?
-pub(crate) fn has_holes(scene: &Scene, mesh: &Mesh) -> bool {
-    caster_cutoff(&scene.materials[mesh.material]).is_some()
 }

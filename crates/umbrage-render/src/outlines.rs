@@ -2,7 +2,7 @@
 
 use crate::draw_list::MaskPart;
 use crate::maps::Growing;
-use crate::masks::has_holes;
+use crate::maskable::has_holes;
 use glam::{DVec4, Vec3};
 use std::ops::Range;
 use umbrage::core::Light;
@@ -108,7 +108,7 @@ impl Outlines {
         points
     }
 
-    /// The indices that draw a part's outline into a mask: off by less than a fraction of a texel, where it may be reduced.
+    /// The indices that draw a part's outline into a mask: off by as many texels as may be, where it may be reduced.
     pub fn indices(&mut self, part: &MaskPart, view: &MaskView, light: &Light) -> Range<u32> {
         let of_mesh = &mut self.meshes[part.mesh];
         let place = light.position_world.clamp(part.bounds_world.min, part.bounds_world.max);

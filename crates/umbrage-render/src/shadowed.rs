@@ -25,6 +25,17 @@ impl Rect {
     }
 }
 
+/// Receivers of a mask: a mesh and consecutive instances.
+#[derive(Clone, Debug)]
+pub(crate) struct ReceiverBatch {
+    /// Index of the mesh.
+    pub mesh: usize,
+    /// Instances: first and past the last.
+    pub instances: std::ops::Range<u32>,
+    /// The pixels that may lie in the shadow.
+    pub on_screen: Rect,
+}
+
 /// Room for the rounding of single precision, as a share of the mask's width and depth.
 const ROOM: f64 = 1e-3;
 
@@ -57,6 +68,11 @@ impl Shadow {
 
     /// The pixels that show what of a box lies in the shadow; `None` where nothing does.
     pub fn on(&self, bounds: &Aabb) -> Option<Rect> {
+        // Most boxes lie on the wrong side of one plane.
+        let corners = bounds.corners().map(|p| p.as_dvec3().extend(1.0));
+        if self.planes.iter().any(|plane| corners.iter().all(|p| plane.dot(*p) < 0.0)) {
+            return None;
+        }
         let mut points: Vec<DVec3> = faces(bounds).iter().flat_map(|face| self.clip(face)).collect();
         let (low, high) = (bounds.min.as_dvec3() - 1e-6, bounds.max.as_dvec3() + 1e-6);
         points.extend(self.corners.iter().filter(|p| p.cmpge(low).all() && p.cmple(high).all()));

@@ -480,7 +480,7 @@ fn of_family(
     check(name, &shot(technique, pairs));
 }
 
-/// No object shadows itself, and what stands in front of its own mask's middle is lit.
+/// Objects that stand on and beside others: each throws its shadow, and none on itself.
 #[test]
 fn mask() {
     let coarse: (&str, &[(&str, &str)]) = ("mask", &[("mask_size", "16")]);
