@@ -3,7 +3,8 @@
 use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
-use glam::{Mat4, Vec3, Vec4};
+use crate::shadowed::{ReceiverBatch, Rect, Shadow};
+use glam::{Mat4, UVec2, Vec3, Vec4};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use umbrage::core::fit::{MaskView, Region, ShadowView};
@@ -67,15 +68,6 @@ pub struct MaskPart {
     pub world_from_object: Mat4,
     /// Box around it.
     pub bounds_world: Aabb,
-}
-
-/// Receivers of a mask: a mesh and consecutive instances.
-#[derive(Clone, Debug)]
-pub struct ReceiverBatch {
-    /// Index of the mesh.
-    pub mesh: usize,
-    /// Instances: first and past the last.
-    pub instances: std::ops::Range<u32>,
 }
 
 /// Is an instance flat, and nothing behind it? `boxes` are those of all instances, world space.
@@ -314,13 +306,14 @@ impl Items {
     }
 
     /// The solid surfaces that are seen and may lie in a mask's shadow; their instances are appended to `instances`.
-    pub fn mask_receivers(
+    pub(crate) fn mask_receivers(
         &self,
         view: &MaskView,
         owner: u32,
-        clip_from_world: Mat4,
+        (clip_from_world, size): (Mat4, UVec2),
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<ReceiverBatch> {
+        let shadow = Shadow::new(view, clip_from_world, size);
         let seen = Frustum::from_clip(clip_from_world, DEPTH);
         let mask = Frustum::from_clip(view.clip_from_world(), DEPTH).without_depth();
         let mut batches: Vec<ReceiverBatch> = Vec::new();
@@ -334,16 +327,41 @@ impl Items {
             {
                 continue;
             }
+            let Some(on_screen) = shadow.on(&item.bounds_world) else { continue };
             let at = instances.len() as u32;
             instances.push(GpuInstance::new(&item.world_from_object));
             match batches.last_mut() {
                 Some(last) if last.mesh == item.mesh && last.instances.end == at => {
-                    last.instances.end = at + 1
+                    last.instances.end = at + 1;
+                    last.on_screen = last.on_screen.union(on_screen);
                 }
-                _ => batches.push(ReceiverBatch { mesh: item.mesh, instances: at..at + 1 }),
+                _ => batches.push(ReceiverBatch { mesh: item.mesh, instances: at..at + 1, on_screen }),
             }
         }
         batches
+    }
+
+    /// The pixels of a picture that a mask may darken; `None` where its shadow is not seen.
+    pub(crate) fn mask_on_screen(
+        &self,
+        view: &MaskView,
+        owner: u32,
+        clip_from_world: Mat4,
+        size: UVec2,
+    ) -> Option<Rect> {
+        let shadow = Shadow::new(view, clip_from_world, size);
+        let seen = Frustum::from_clip(clip_from_world, DEPTH);
+        let mut all: Option<Rect> = None;
+        let receivers = self.items.iter().filter(|item| item.roles.receiver && item.object != owner);
+        for item in receivers.filter(|item| seen.may_see(&item.bounds_world)) {
+            let Some(rect) = shadow.on(&item.bounds_world) else { continue };
+            let joined = all.map_or(rect, |all| all.union(rect));
+            if joined == Rect::whole(size) {
+                return Some(joined);
+            }
+            all = Some(joined);
+        }
+        all
     }
 
     /// The objects of the instances that [`Self::solid`] and [`Self::blended`] list, in the same order.

@@ -108,6 +108,7 @@ pub struct GpuFullVertex {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::masks::GpuMaskList;
     use crate::shaders;
     use std::collections::BTreeMap;
     use std::mem::offset_of;
@@ -186,6 +187,7 @@ mod tests {
                     uv_rows
                 ),
             ),
+            ("MaskList", offsets!(GpuMaskList, masks, seen)),
             ("UmbrageView", (library("view"), size_of::<GpuView>())),
             ("UmbrageMask", (library("mask"), size_of::<GpuMask>())),
         ]);

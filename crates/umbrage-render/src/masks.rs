@@ -1,28 +1,31 @@
 //! Projective masks of a scene's lights: which objects throw one, what each is drawn with, and which have to be drawn anew.
 
-use crate::draw_list::{MaskPart, ReceiverBatch, Work};
-use crate::geometry::{Geometry, caster_cutoff};
+use crate::draw_list::{MaskPart, Work};
+use crate::geometry::Geometry;
 use crate::gpu::Gpu;
 use crate::layout::GpuInstance;
 use crate::lights::eye_of;
 use crate::maps::Growing;
+use crate::maskable::{mask_options, most_of_light};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::outlines::Outlines;
 use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::shadowed::{ReceiverBatch, Rect};
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
-use glam::Mat4;
+use glam::{Mat4, UVec2};
+use std::mem::offset_of;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
 use umbrage::caster::{GpuCasterView, NO_DEFORM};
-use umbrage::core::fit::{MaskError, MaskOptions, MaskView, fit_mask};
+use umbrage::core::fit::{MaskError, MaskView, fit_mask};
 use umbrage::core::layout_mask::GpuMask;
-use umbrage::core::technique::mask::{Aim, Lookup, Mask, Ratios, Receivers};
-use umbrage::core::technique::{Method, Settings};
+use umbrage::core::technique::Method;
+use umbrage::core::technique::mask::{Lookup, Mask, Receivers};
 use umbrage::core::volume::light_point_world;
-use umbrage::core::{Aabb, Light, fit};
+use umbrage::core::{Aabb, Light};
 use umbrage::mask::{
     GpuReceiving, MaskMaps, MaskPipelines, Shadowed, SubtractPipelines, mask_sampler, record_mask_pass,
     record_subtract,
@@ -31,31 +34,12 @@ use umbrage_scene::{Mesh, Scene};
 
 /// How many masks a picture may have: they stand in a uniform.
 pub const MOST_MASKS: usize = 256;
-/// Memory that masks may take, bytes.
-const MOST_BYTES: u64 = 512 << 20;
-
-/// How a technique fits its masks, in a scene of that box.
-pub fn mask_options(choices: &Mask, size_texel: u32, scene_world: &Aabb) -> MaskOptions {
-    MaskOptions {
-        size_texel,
-        frame: match choices.aim {
-            Aim::Mean => fit::Frame::Mean,
-            Aim::Box => fit::Frame::Box,
-        },
-        ratios: match choices.ratios {
-            Ratios::Adaptive => fit::Ratios::Adaptive,
-            Ratios::Symmetric => fit::Ratios::Symmetric,
-            Ratios::Fixed => fit::Ratios::Fixed,
-        },
-        fixed_half_m: scene_world.radius().max(1e-6),
-        ..MaskOptions::default()
-    }
-}
-
-/// Most masks of a light, when so many lights have some of such a size.
-pub fn most_of_light(lights: usize, size_texel: u32) -> usize {
-    let of_memory = (MOST_BYTES / (u64::from(size_texel) * u64::from(size_texel)).max(1)) as usize;
-    (MOST_MASKS.min(of_memory.max(1)) / lights.max(1)).max(1)
+/// Mirrors `MaskList` of `shaders.rs`.
+#[repr(C)]
+pub struct GpuMaskList {
+    pub masks: [GpuMask; MOST_MASKS],
+    /// The first pixel that each may darken and the one past the last, 16 bits a number, and the object that it is of.
+    pub seen: [[u32; 4]; MOST_MASKS],
 }
 
 /// All that a mask depends on.
@@ -66,14 +50,21 @@ struct Content {
 }
 
 /// A mesh of a blocker.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct Part {
     mesh: usize,
     /// Of the mesh's vertices.
     version: u64,
-    /// Of its outline.
+    /// Of its outline, which follows from the view, the mesh and its place.
     indices: Range<u32>,
     placed: GpuInstance,
+}
+
+impl PartialEq for Part {
+    /// Where in a buffer an outline stands makes no other mask.
+    fn eq(&self, other: &Self) -> bool {
+        (self.mesh, self.version, &self.placed) == (other.mesh, other.version, &other.placed)
+    }
 }
 
 /// One mask.
@@ -84,6 +75,8 @@ struct OneMask {
     wanted: Arc<Content>,
     /// Its first instance in the buffer.
     first: u32,
+    /// The pixels that it may darken.
+    on_screen: Option<Rect>,
 }
 
 /// What takes masks away from receivers, pass by pass.
@@ -169,7 +162,7 @@ impl Masks {
             }],
         });
         let subtract = (choices.receivers == Receivers::Subtractive).then(|| {
-            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V);
+            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V, deform);
             let list = uniform("masks apart", most as u64 * u64::from(SubtractPipelines::STRIDE));
             let receiving: Vec<_> =
                 (0..lights.max(1)).map(|_| uniform("receiving", size_of::<GpuReceiving>() as u64)).collect();
@@ -200,7 +193,7 @@ impl Masks {
             matrices,
             view_group,
             instances: Growing::new(device, "blockers", wgpu::BufferUsages::VERTEX, 0),
-            list: uniform("masks", (MOST_MASKS * size_of::<GpuMask>()) as u64),
+            list: uniform("masks", size_of::<GpuMaskList>() as u64),
             masks: Vec::new(),
             held: vec![None; most],
             of_light: Vec::new(),
@@ -239,7 +232,7 @@ impl Masks {
     }
 
     /// Fits all masks to the world. What could not be fitted is said.
-    pub fn tell(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4) -> Vec<String> {
+    pub fn tell(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4, size: UVec2) -> Vec<String> {
         let mut warnings = Vec::new();
         let options = mask_options(&self.choices, self.size_texel, &world.items.whole());
         let lights = world.lights.len().min(crate::MAX_LIGHTS);
@@ -258,12 +251,24 @@ impl Masks {
                     break;
                 }
                 let points = self.outlines.fit_points_world(&parts, self.choices.fit_to);
-                match fit_mask(&light.light, points.iter().copied(), &options) {
+                let fitted = fit_mask(&light.light, points.iter().copied(), &options);
+                // Where the points are dense at one end, the other may lie too far aside. What `unmaskable` lets through has room
+                // around the middle of its box.
+                let fitted = fitted.or_else(|why| match why {
+                    MaskError::Unreached => Err(why),
+                    _ => {
+                        let whole = parts.iter().fold(Aabb::EMPTY, |all, part| all.union(&part.bounds_world));
+                        fit_mask(&light.light, whole.corners().into_iter(), &options)
+                    }
+                });
+                match fitted {
                     Ok(view) => {
                         let content = self.content(&view, &parts, &light.light, time_s, &world.mesh_versions);
                         let at = placed.len() as u32;
                         placed.extend(content.parts.iter().map(|part| part.placed));
-                        self.masks.push(OneMask { view, object, wanted: Arc::new(content), first: at });
+                        let on_screen = world.items.mask_on_screen(&view, object, clip_from_world, size);
+                        let wanted = Arc::new(content);
+                        self.masks.push(OneMask { view, object, wanted, first: at, on_screen });
                     }
                     Err(MaskError::Unreached) => {}
                     Err(why) => warnings.push(format!("light {index} has no mask of object {object}: {why}")),
@@ -284,7 +289,14 @@ impl Masks {
             .map(|(layer, mask)| GpuMask::new(&mask.view, layer, Some(mask.object)))
             .collect();
         gpu.queue.write_buffer(&self.list, 0, bytemuck::cast_slice(&list));
-        self.tell_receivers(gpu, world, clip_from_world, &list);
+        let seen = |mask: &OneMask| {
+            let rect = mask.on_screen.unwrap_or(Rect { min: UVec2::ZERO, max: UVec2::ZERO });
+            let corner = |at: UVec2| at.x | (at.y << 16);
+            [corner(rect.min), corner(rect.max), mask.object, 0]
+        };
+        let seen: Vec<[u32; 4]> = self.masks.iter().map(seen).collect();
+        gpu.queue.write_buffer(&self.list, offset_of!(GpuMaskList, seen) as u64, bytemuck::cast_slice(&seen));
+        self.tell_receivers(gpu, world, (clip_from_world, size), &list);
         warnings
     }
 
@@ -307,7 +319,13 @@ impl Masks {
     }
 
     /// Lists the receivers of each mask, where they are drawn once more.
-    fn tell_receivers(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4, list: &[GpuMask]) {
+    fn tell_receivers(
+        &mut self,
+        gpu: &Gpu,
+        world: &World,
+        (clip_from_world, size): (Mat4, UVec2),
+        list: &[GpuMask],
+    ) {
         let Some(subtract) = &mut self.subtract else { return };
         let stride = SubtractPipelines::STRIDE as usize;
         let mut bytes = vec![0u8; list.len() * stride];
@@ -320,13 +338,19 @@ impl Masks {
         subtract.draws.clear();
         for (index, range) in self.of_light.iter().enumerate() {
             let light = light_point_world(&world.lights[index].light);
-            let receiving = GpuReceiving { clip_from_world, eye: eye.extend(eye_w), light };
+            let receiving = GpuReceiving {
+                clip_from_world,
+                eye: eye.extend(eye_w),
+                light,
+                time_s: world.time_s,
+                pad: [0.0; 3],
+            };
             gpu.queue.write_buffer(&subtract.receiving[index], 0, bytemuck::bytes_of(&receiving));
             let mut draws = Vec::new();
             for number in range.clone() {
                 let mask = &self.masks[number];
-                let batches =
-                    world.items.mask_receivers(&mask.view, mask.object, clip_from_world, &mut instances);
+                let eye = (clip_from_world, size);
+                let batches = world.items.mask_receivers(&mask.view, mask.object, eye, &mut instances);
                 draws.extend(batches.into_iter().map(|batch| (number, batch)));
             }
             subtract.draws.push(draws);
@@ -334,11 +358,12 @@ impl Masks {
         subtract.instances.write(&gpu.device, &gpu.queue, bytemuck::cast_slice(&instances));
     }
 
-    /// The masks that do not hold what they should; all when nothing is reused.
+    /// The masks whose shadow may be seen and that do not hold what they should; all that may be seen when nothing is reused.
     pub fn stale(&self, reuse: bool) -> Vec<usize> {
         let is_stale =
             |number: &usize| !reuse || self.held[*number].as_ref() != Some(&self.masks[*number].wanted);
-        (0..self.masks.len()).filter(is_stale).collect()
+        let is_seen = |number: &usize| self.masks[*number].on_screen.is_some();
+        (0..self.masks.len()).filter(is_seen).filter(is_stale).collect()
     }
 
     /// The passes that draw these masks, then those that take them from receivers.
@@ -417,6 +442,8 @@ impl Masks {
                         }
                         recorded.set_pipeline(subtract.pipelines.of(shadowed));
                         for (number, batch) in draws {
+                            let (at, size) = (batch.on_screen.min, batch.on_screen.size());
+                            recorded.set_scissor_rect(at.x, at.y, size.x, size.y);
                             let mesh = &self.geometry.meshes[batch.mesh];
                             let offset = *number as u32 * SubtractPipelines::STRIDE;
                             recorded.set_bind_group(0, &subtract.groups[light], &[offset]);
@@ -441,61 +468,4 @@ impl Masks {
         let v = self.subtract.as_ref().map_or(0, |subtract| subtract.v.memory_bytes());
         self.maps.memory_bytes() + self.outlines.memory_bytes() + v
     }
-}
-
-/// For each instance: is it a part of an object that a light cannot mask, though it shines on it? With the reason of the first.
-pub(crate) fn unmaskable(scene: &Scene, settings: &Settings) -> (Vec<bool>, Option<String>) {
-    let mut by_map = vec![false; scene.instances.len()];
-    let mut reason = None;
-    let Method::Mask(choices) = settings.method else { return (by_map, reason) };
-    let size_texel = settings.value("mask_size").map_or(512, |size| size as u32);
-    let options = mask_options(&choices, size_texel, &scene.bounds());
-    let lights = scene.lights.len().min(crate::MAX_LIGHTS);
-    let boxes: Vec<Aabb> = scene
-        .instances
-        .iter()
-        .map(|placed| scene.meshes[placed.mesh].bounds.transformed(&placed.world_from_object))
-        .collect();
-    let mut objects: Vec<Vec<usize>> = vec![Vec::new(); scene.objects() as usize];
-    for (number, placed) in scene.instances.iter().enumerate().filter(|(_, placed)| placed.roles.blocker) {
-        objects[placed.object as usize].push(number);
-    }
-    let box_of = |object: &[usize]| object.iter().fold(Aabb::EMPTY, |all, i| all.union(&boxes[*i]));
-    let is_idle = |light: &Light, object: &[usize]| {
-        object.iter().all(|number| crate::draw_list::is_flat_and_idle(scene, light, *number, &boxes))
-    };
-    let mut wanted = 0;
-    objects.sort_by(|a, b| box_of(b).radius().total_cmp(&box_of(a).radius()));
-    for object in objects.iter().filter(|object| !object.is_empty()) {
-        let active: Vec<&Light> = scene
-            .lights
-            .iter()
-            .take(lights)
-            .map(|placed| &placed.light)
-            .filter(|light| !is_idle(light, object))
-            .collect();
-        let failed = active.iter().find_map(|light| {
-            let fitted = fit_mask(light, box_of(object).corners().into_iter(), &options);
-            fitted.err().filter(|why| *why != MaskError::Unreached)
-        });
-        let too_many = wanted >= most_of_light(lights, size_texel);
-        let why = failed.map(|why| why.to_string()).or_else(|| {
-            too_many.then(|| {
-                format!("a light has {} masks of this size at most", most_of_light(lights, size_texel))
-            })
-        });
-        match why {
-            Some(why) => {
-                object.iter().for_each(|number| by_map[*number] = true);
-                reason.get_or_insert(why);
-            }
-            None => wanted += usize::from(!active.is_empty()),
-        }
-    }
-    (by_map, reason)
-}
-
-/// Is a mesh one whose triangles have contours inside of them?
-pub(crate) fn has_holes(scene: &Scene, mesh: &Mesh) -> bool {
-    caster_cutoff(&scene.materials[mesh.material]).is_some()
 }

@@ -1,7 +1,7 @@
 //! The renderer's own pipelines.
 
 use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
-use crate::masks::MOST_MASKS;
+use crate::masks::GpuMaskList;
 use crate::materials::Variant;
 use crate::options::View;
 use crate::shaders::{self, MOST_UNIFORM_VIEWS, ShaderNeeds};
@@ -9,7 +9,6 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use umbrage::CasterStreams;
 use umbrage::core::layout::GpuView;
-use umbrage::core::layout_mask::GpuMask;
 
 /// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
 pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -94,7 +93,7 @@ impl Layouts {
         };
         let maps = texture(kept, TextureViewDimension::D2Array);
         let masks = [
-            uniform(size_of::<GpuMask>() * MOST_MASKS),
+            uniform(size_of::<GpuMaskList>()),
             texture(TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
             wgpu::BindingType::Sampler(SamplerBindingType::Filtering),
         ];

@@ -8,7 +8,8 @@ use crate::gpu::Gpu;
 use crate::layout::{GpuFrame, GpuLight, MAX_LIGHTS};
 use crate::lights::{Lights, eye_of};
 use crate::maps::{Casting, Growing, MapMaker, MapSet};
-use crate::masks::{Masks, has_holes, unmaskable};
+use crate::maskable::{has_holes, unmaskable};
+use crate::masks::Masks;
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::options::{RenderOptions, View};
@@ -291,7 +292,7 @@ impl<'a> Renderer<'a> {
         let Some(masks) = &mut self.masks else { return Vec::new() };
         let objects = world.items.objects(frustum, eye.position);
         self.objects.write(&self.gpu.device, &self.gpu.queue, bytemuck::cast_slice(&objects));
-        let warnings = masks.tell(self.gpu, world, eye.clip_from_world);
+        let warnings = masks.tell(self.gpu, world, eye.clip_from_world, self.options.size);
         for (index, light) in lights.iter_mut().enumerate() {
             let range = masks.of_light(index);
             light.masks = range.start as u32 | ((range.len() as u32) << 16);
@@ -370,7 +371,7 @@ fn is_on_screen(settings: &Settings) -> bool {
 fn by_map(scene: &Scene, options: &RenderOptions) -> (Vec<bool>, Option<String>) {
     let is_volume = matches!(options.settings.method, Method::Volume(_));
     if !is_volume {
-        return unmaskable(scene, &options.settings);
+        return unmaskable(scene, &options.settings, options.deform_reach_m);
     }
     let is_by_map =
         |placed: &Instance| options.deform.is_some() || has_holes(scene, &scene.meshes[placed.mesh]);

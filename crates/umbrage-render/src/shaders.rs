@@ -120,7 +120,13 @@ fn masked(needs: &ShaderNeeds) -> String {
     };
     format!(
         "{others}
-@group(0) @binding(11) var<uniform> mask_list: array<UmbrageMask, {MOST_MASKS}>;
+struct MaskList {{
+    masks: array<UmbrageMask, {MOST_MASKS}>,
+    // The first pixel that each may darken and the one past the last, 16 bits a number, and the object that it is of.
+    seen: array<vec4u, {MOST_MASKS}>,
+}}
+
+@group(0) @binding(11) var<uniform> mask_list: MaskList;
 @group(0) @binding(12) var masks: texture_2d_array<f32>;
 @group(0) @binding(13) var mask_sampler: sampler;
 
@@ -129,11 +135,22 @@ var<private> at_object: u32;
 
 fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
     var covered = 0.0;
-    let first = light.masks & 0xffffu;
-    for (var i = first; i < first + (light.masks >> 16u); i++) {{
-        // What a mask shows of its own object may lie behind it.
-        if mask_list[i].owner != at_object {{
-            covered = max(covered, umbrage_mask_coverage(masks, mask_sampler, mask_list[i], p_world, normal, towards));
+    let end = (light.masks & 0xffffu) + (light.masks >> 16u);
+    for (var first = light.masks & 0xffffu; first < end; first += 32u) {{
+        // Most masks are far from most pixels. Those that are not are noted first and looked up together: neighbours then
+        // take as many turns as the one of them that lies in most.
+        var near = 0u;
+        for (var i = first; i < min(end, first + 32u); i++) {{
+            let seen = mask_list.seen[i];
+            let inside = at_pixel.x >= (seen.x & 0xffffu) && at_pixel.y >= (seen.x >> 16u)
+                && at_pixel.x < (seen.y & 0xffffu) && at_pixel.y < (seen.y >> 16u);
+            // What a mask shows of its own object may lie behind it.
+            near |= select(0u, 1u << (i - first), inside && seen.z != at_object);
+        }}
+        while near != 0u {{
+            let i = first + firstTrailingBit(near);
+            near &= near - 1u;
+            covered = max(covered, umbrage_mask_coverage(masks, mask_sampler, mask_list.masks[i], p_world, normal, towards));
         }}
     }}
     return Seen(1.0 - covered) * mapped_share(index, light, p_world, normal, towards);

@@ -465,6 +465,45 @@ fn density_s_legend() {
     density("density-legend", &builtin("tilt"), View::Density, 176);
 }
 
+/// Masks and volumes: V, beside which neither the scene without shadows nor that of another choice may pass.
+fn of_family(
+    name: &str,
+    scene: &Scene,
+    technique: &str,
+    pairs: &[(&str, &str)],
+    other: (&str, &[(&str, &str)]),
+) {
+    let Some(gpu) = gpu() else { return };
+    let shot = |technique, pairs| shoot(&gpu, scene, settings(technique, pairs), View::Visibility, 128);
+    check_differs(name, &shot("unshadowed", &[]), "the scene without shadows");
+    check_differs(name, &shot(other.0, other.1), other.0);
+    check(name, &shot(technique, pairs));
+}
+
+/// Objects that stand on and beside others: each throws its shadow, and none on itself.
+#[test]
+fn mask() {
+    let coarse: (&str, &[(&str, &str)]) = ("mask", &[("mask_size", "16")]);
+    of_family("mask", &builtin("contact"), "mask", &[("mask_size", "256")], coarse);
+}
+
+#[test]
+fn mask_subtractive() {
+    let pairs: &[(&str, &str)] = &[("mask_size", "64"), ("lookup", "nearest")];
+    let coarse: (&str, &[(&str, &str)]) = ("mask-subtractive", &[("mask_size", "16")]);
+    of_family("mask-subtractive", &builtin("columns"), "mask-subtractive", pairs, coarse);
+}
+
+#[test]
+fn volume() {
+    of_family("volume", &builtin("torus"), "volume", &[], ("linear", &[("map_size", "64")]));
+}
+
+#[test]
+fn volume_soft() {
+    of_family("volume-soft", &builtin("torus"), "volume-soft", &[], ("volume", &[]));
+}
+
 /// Faces of volumes without end; those of short ones must not pass for them.
 fn faces_of_volumes(name: &str, scene: &str, side: u32) {
     let Some(gpu) = gpu() else { return };

@@ -3,34 +3,15 @@
 
 mod common;
 
-use common::scenes::{cut_out, sheet};
+use common::scenes::{cuboid, cut_out, sheet};
 use common::{gpu, settings};
 use glam::{Mat4, UVec2, Vec3};
 use std::time::Duration;
 use umbrage_render::umbrage::core::{Aabb, Camera, Light, LightKind};
 use umbrage_render::{FrameReport, Gpu, MapSchedule, Measure, RenderError, RenderOptions, Renderer};
-use umbrage_scene::{AlphaMode, Instance, Material, Mesh, Scene, SceneCamera, SceneLight};
+use umbrage_scene::{AlphaMode, Instance, Material, Scene, SceneCamera, SceneLight};
 
 const SIDE: u32 = 96;
-
-/// A closed box around the origin, with normals along its faces.
-fn cuboid(half: Vec3) -> Mesh {
-    let mut mesh = Mesh { name: "box".into(), bounds: Aabb { min: -half, max: half }, ..Mesh::default() };
-    for axis in 0..3 {
-        for sign in [1.0f32, -1.0] {
-            let pick = |i: usize| if i == axis { sign } else { 0.0 };
-            let normal = Vec3::new(pick(0), pick(1), pick(2));
-            let (a, b) = normal.any_orthonormal_pair();
-            let first = mesh.positions.len() as u32;
-            for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
-                mesh.positions.push((normal + a * u + b * v) * half);
-                mesh.normals.push(normal);
-            }
-            mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
-        }
-    }
-    mesh
-}
 
 /// Two boxes far apart over a floor each, under a spot light each that sees only its own, and a camera that sees both.
 /// Instances: floor, box, floor, box.

@@ -5,7 +5,6 @@ use crate::ShadowError;
 use crate::caster::{CasterStreams, GpuCasterView, caster_shader, unclipped};
 use glam::{Mat4, Vec4};
 use std::num::NonZeroU64;
-use umbrage_core::DEPTH;
 use umbrage_core::layout_mask::GpuMask;
 use umbrage_core::wgsl::assemble;
 
@@ -119,9 +118,9 @@ fn mask_shader(deform: &str) -> String {
     [&caster_shader(deform), include_str!("../wgsl/mask_caster.wgsl")].join("\n")
 }
 
-fn receiver_shader() -> String {
+fn receiver_shader(deform: &str) -> String {
     let library = assemble(&["mask"]).unwrap_or_else(|e| format!("// {e}\n"));
-    [&library, include_str!("../wgsl/mask_receiver.wgsl")].join("\n")
+    [&library, deform, include_str!("../wgsl/mask_receiver.wgsl")].join("\n")
 }
 
 impl GpuCasterView {
@@ -220,6 +219,10 @@ pub struct GpuReceiving {
     pub eye: Vec4,
     /// The same of the light.
     pub light: Vec4,
+    /// What deforming receivers know of time, seconds.
+    pub time_s: f32,
+    /// Nothing.
+    pub pad: [f32; 3],
 }
 
 /// What of a mask's shadow is drawn.
@@ -243,9 +246,15 @@ impl SubtractPipelines {
     /// Bytes from one mask to the next in the buffer of [`Self::group`]: every device allows dynamic offsets of this many.
     pub const STRIDE: u32 = 256;
 
-    /// For V of `v_format` and a depth with a stencil of `format`.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, v_format: wgpu::TextureFormat) -> Self {
-        let shader = module(device, "umbrage receivers", receiver_shader());
+    /// For V of `v_format` and a depth with a stencil of `format`. `deform` moves vertices as it did where the surfaces were drawn:
+    /// see [`crate::caster::NO_DEFORM`].
+    pub fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        v_format: wgpu::TextureFormat,
+        deform: &str,
+    ) -> Self {
+        let shader = module(device, "umbrage receivers", receiver_shader(deform));
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage receivers"),
@@ -308,15 +317,16 @@ impl SubtractPipelines {
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format,
                     depth_write_enabled: Some(false),
-                    // Drawn a second time, a surface lies where it lay, or by other rounding just before.
-                    depth_compare: Some(crate::caster::depth_compare()),
+                    // Drawn a second time, a surface lies exactly where it lay. What lies before it is not there: a hole that
+                    // a texture cuts, or a face that is not drawn from behind.
+                    depth_compare: Some(wgpu::CompareFunction::Equal),
                     stencil: wgpu::StencilState {
                         front: once,
                         back: once,
                         read_mask: 0xff,
                         write_mask: 0xff,
                     },
-                    bias: wgpu::DepthBiasState { constant: -DEPTH.away() as i32, ..Default::default() },
+                    bias: wgpu::DepthBiasState::default(),
                 }),
                 multisample: Default::default(),
                 fragment: Some(wgpu::FragmentState {
@@ -414,7 +424,7 @@ mod tests {
 
     #[test]
     fn shaders_validate_and_the_mirror_has_their_offsets() {
-        for text in [mask_shader(crate::caster::NO_DEFORM), receiver_shader()] {
+        for text in [mask_shader(crate::caster::NO_DEFORM), receiver_shader(crate::caster::NO_DEFORM)] {
             let module =
                 naga::front::wgsl::parse_str(&text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&text)));
             naga::valid::Validator::new(
@@ -428,14 +438,15 @@ mod tests {
                 continue;
             };
             let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("no struct") };
-            let shader: Vec<_> = members.iter().map(|m| m.offset as usize).collect();
+            let shader: Vec<_> = members[..4].iter().map(|m| m.offset as usize).collect();
             let mirror = [
                 offset_of!(GpuReceiving, clip_from_world),
                 offset_of!(GpuReceiving, eye),
                 offset_of!(GpuReceiving, light),
+                offset_of!(GpuReceiving, time_s),
             ];
             assert_eq!((shader.as_slice(), *span as usize), (&mirror[..], size_of::<GpuReceiving>()));
         }
-        assert!(receiver_shader().contains("struct Receiving"));
+        assert!(receiver_shader(crate::caster::NO_DEFORM).contains("struct Receiving"));
     }
 }

@@ -5,6 +5,11 @@ struct Receiving {
     // Place and 1, or the direction towards it and 0.
     eye: vec4f,
     light: vec4f,
+    // What deforming receivers know of time.
+    time_s: f32,
+    pad_0: f32,
+    pad_1: f32,
+    pad_2: f32,
 }
 
 @group(0) @binding(0) var<uniform> receiving: Receiving;
@@ -28,7 +33,8 @@ struct Received {
 @vertex
 fn vs_receiver(@location(0) p_object: vec3f, i: Instance) -> Received {
     let p = vec4f(p_object, 1.0);
-    let p_world = vec3f(dot(i.row_x, p), dot(i.row_y, p), dot(i.row_z, p));
+    let at_rest = vec3f(dot(i.row_x, p), dot(i.row_y, p), dot(i.row_z, p));
+    let p_world = umbrage_deform(at_rest, p_object, receiving.time_s);
     return Received(receiving.clip_from_world * vec4f(p_world, 1.0), p_world);
 }
 

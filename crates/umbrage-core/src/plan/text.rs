@@ -121,7 +121,7 @@ fn draws(draws: Draws) -> &'static str {
         Draws::Volumes => "sides of volumes, and their lids for casters that are counted behind the surface",
         Draws::Screen => "one triangle over the picture",
         Draws::Outlines => {
-            "each blocker's outline, with fewer triangles where that changes less than a fraction of a texel"
+            "each blocker's outline, with fewer triangles as far as that changes no more than `outline_texel`"
         }
         Draws::Receivers => "objects beyond each blocker, once for each mask",
         Draws::Surfaces => {

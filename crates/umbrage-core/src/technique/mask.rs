@@ -89,7 +89,7 @@ choices! {
         Reduced = Choice {
             id: "reduced",
             label: "Reduced",
-            summary: "a mesh with fewer triangles whose outline stays within a fraction of a texel",
+            summary: "a mesh with fewer triangles whose outline stays within a few texels, and of a closed one the side with fewer",
             source: Some(NAGY),
             params: &[OUTLINE_TEXEL],
             ..EMPTY

@@ -249,7 +249,7 @@ pub(super) const OUTLINE_TEXEL: Param = Param {
     min: 0.0,
     max: 16.0,
     step: 0.05,
-    default: ParamDefault::Fixed(0.5),
+    default: ParamDefault::Fixed(2.0),
     help: "how far the reduced outline may be from the true one, in texels of the mask",
     cost: "none; more leaves fewer triangles to draw",
 };

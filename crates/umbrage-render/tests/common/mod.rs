@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod compare;
+pub mod found;
 pub mod scenes;
 
 use std::sync::{Mutex, MutexGuard, OnceLock};

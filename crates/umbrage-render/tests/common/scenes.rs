@@ -37,6 +37,25 @@ pub fn sheet(center: Vec3, right: Vec3, up: Vec3, material: usize) -> Mesh {
     }
 }
 
+/// A closed box around the origin, with normals along its faces.
+pub fn cuboid(half: Vec3) -> Mesh {
+    let mut mesh = Mesh { name: "box".into(), bounds: Aabb { min: -half, max: half }, ..Mesh::default() };
+    for axis in 0..3 {
+        for sign in [1.0f32, -1.0] {
+            let pick = |i: usize| if i == axis { sign } else { 0.0 };
+            let normal = Vec3::new(pick(0), pick(1), pick(2));
+            let (a, b) = normal.any_orthonormal_pair();
+            let first = mesh.positions.len() as u32;
+            for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                mesh.positions.push((normal + a * u + b * v) * half);
+                mesh.normals.push(normal);
+            }
+            mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|i| first + i));
+        }
+    }
+    mesh
+}
+
 /// Puts meshes where they are, over a floor of 8 x 8 m, under a spot light, with a camera above.
 pub fn over_floor(
     materials: Vec<Material>,
