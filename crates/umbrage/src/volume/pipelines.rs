@@ -84,6 +84,14 @@ fn nearer() -> wgpu::CompareFunction {
     if DEPTH.is_reversed() { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Less }
 }
 
+/// Moves faces away from the eye by what the depths of a lid and of its surface may differ in where they are drawn in another
+/// order, turned or clipped: some steps of the format, and where a plane is steep the rounding of its slope over a wide picture.
+/// No edge of a shadow moves by more than a thirty-second of a pixel.
+fn behind() -> wgpu::DepthBiasState {
+    let away = DEPTH.away();
+    wgpu::DepthBiasState { constant: 8 * away as i32, slope_scale: 0.0, clamp: 0.0 }
+}
+
 impl VolumePipelines {
     /// Makes pipelines over a depth of `format`, one of [`COUNT_FORMATS`], that write V to targets of `v_format`.
     pub fn new(
@@ -182,7 +190,7 @@ impl VolumePipelines {
                 depth_write_enabled: Some(false),
                 depth_compare: Some(nearer()),
                 stencil: wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff },
-                bias: Default::default(),
+                bias: behind(),
             },
             None,
         )
