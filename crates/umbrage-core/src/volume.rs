@@ -78,6 +78,21 @@ pub fn shadow_may_be_seen(frustum: &Frustum, light_world: Vec4, caster_world: &A
     frustum.may_see_swept(caster_world, |p| p * light_world.w - light_world.xyz())
 }
 
+/// How long volumes are made where they cannot be without end, metres: so often the scene, light included.
+///
+/// A parallel eye sees every infinitely far point at the same place, so that no far lid covers its picture; and an end that a far
+/// plane cuts is none. What is `times` as long ends behind all that is seen, but for a light nearer than a `times`-th of a
+/// triangle's width to the triangle's plane.
+pub fn finite_length_m(scene_world: &Aabb, light_world: Vec4, times: f32) -> f32 {
+    let light = light_world.xyz();
+    let all = if light_world.w == 0.0 {
+        *scene_world
+    } else {
+        Aabb { min: scene_world.min.min(light), max: scene_world.max.max(light) }
+    };
+    if scene_world.is_empty() { 1.0 } else { times * all.size().length().max(f32::MIN_POSITIVE) }
+}
+
 /// Pixels: left, top, width, height.
 pub type Scissor = [u32; 4];
 

@@ -114,3 +114,13 @@ fn a_caster_far_from_the_way_to_the_light_needs_no_caps_and_a_far_shadow_is_not_
         lit_pixels(&lamp, &around(Vec3::ZERO, 5.0), clip_from_world, UVec2::new(320, 200)).expect("seen");
     assert!(w < 60 && h < 60, "{w} {h}");
 }
+
+#[test]
+fn what_must_end_ends_behind_scene_and_light() {
+    let scene = around(Vec3::ZERO, 1.0);
+    let sun = finite_length_m(&scene, Vec4::new(0.0, 900.0, 0.0, 0.0), 2.0);
+    assert!((sun - 2.0 * 12f32.sqrt()).abs() < 1e-4, "a direction is no place: {sun}");
+    assert!(finite_length_m(&scene, Vec4::new(0.0, 9.0, 0.0, 1.0), 2.0) > 20.0);
+    assert!(finite_length_m(&around(Vec3::ONE, 0.0), Vec4::new(0.0, 1.0, 0.0, 0.0), 2.0) > 0.0);
+    assert_eq!(finite_length_m(&Aabb::EMPTY, Vec4::W, 2.0), 1.0);
+}

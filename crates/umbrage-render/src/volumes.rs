@@ -10,12 +10,17 @@ use umbrage::core::edges::Adjacency;
 use umbrage::core::technique::volume::Volume;
 use umbrage::core::technique::{Method, Settings};
 use umbrage::core::volume as maths;
-use umbrage::core::{DEPTH, Frustum};
+use umbrage::core::{Camera, DEPTH, Frustum, Projection};
 use umbrage::volume::{
     Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, count_volumes,
     find_silhouettes, record_counts, record_silhouettes, record_visibility, write_visibility,
 };
-use umbrage_scene::{Mesh, Scene};
+use umbrage_scene::{Mesh, Scene, SceneLight};
+
+/// A parallel eye's volumes are so many times as long as the scene; and where the far plane is moved behind their ends, which costs
+/// depth its precision, so many times.
+const LENGTHS: f32 = 1e5;
+const CUT_LENGTHS: f32 = 64.0;
 
 /// The volumes of one light.
 #[derive(Debug, Default)]
@@ -105,6 +110,30 @@ impl Volumes {
         }
     }
 
+    /// The camera that volumes can be counted for: where a far plane would cut them, one without, and for a parallel eye one that is
+    /// beyond their ends.
+    pub fn camera(&self, gpu: &Gpu, world: &World) -> Camera {
+        let camera = world.camera;
+        if umbrage::caster::unclipped(&gpu.device) {
+            return camera;
+        }
+        let far_m = match camera.projection {
+            Projection::Perspective { .. } => f32::INFINITY,
+            Projection::Orthographic { .. } => {
+                let scene_world = world.items.whole();
+                let length_m = |placed: &SceneLight| {
+                    let light_world = maths::light_point_world(&placed.light);
+                    self.extrude_m.max(maths::finite_length_m(&scene_world, light_world, CUT_LENGTHS))
+                };
+                let longest_m = world.lights.iter().map(length_m).fold(0.0, f32::max);
+                let farthest_m =
+                    scene_world.corners().iter().map(|p| p.distance(camera.position_world)).fold(0.0, f32::max);
+                (longest_m + farthest_m).max(camera.far_m)
+            }
+        };
+        Camera { far_m, ..camera }
+    }
+
     /// Lists what is drawn of the world from where it is seen. Faces that hold are kept.
     pub fn tell(
         &mut self,
@@ -119,10 +148,17 @@ impl Volumes {
         let frustum = Frustum::from_clip(clip_from_world, DEPTH);
         let near_world = maths::near_corners_world(clip_from_world, DEPTH.ndc_near());
         let scene_world = world.items.whole();
+        let is_parallel = matches!(world.camera.projection, Projection::Orthographic { .. });
+        let lengths = if umbrage::caster::unclipped(&gpu.device) { LENGTHS } else { CUT_LENGTHS };
         for (index, placed) in world.lights.iter().enumerate().take(self.lights.len()) {
             let light = &placed.light;
             let light_world = maths::light_point_world(light);
             let scissor = maths::lit_pixels(light, &scene_world, clip_from_world, size);
+            let extrude_m = if is_parallel && self.extrude_m <= 0.0 {
+                maths::finite_length_m(&scene_world, light_world, lengths)
+            } else {
+                self.extrude_m
+            };
             let mut draw = Vec::new();
             let mut casters = Vec::new();
             for placed in world.items.volume_casters(light, all_casters) {
@@ -143,7 +179,7 @@ impl Volumes {
                     world_from_object: placed.world_from_object,
                     light_world,
                     inset_m: self.inset_m,
-                    extrude_m: self.extrude_m,
+                    extrude_m,
                     both_sides,
                     // What is not closed may be seen from behind, and then its lid is looked through.
                     near_caps: is_behind || both_sides || self.open[placed.mesh],

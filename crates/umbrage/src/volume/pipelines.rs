@@ -177,9 +177,13 @@ impl VolumePipelines {
         // Behind: what is left through its back was entered. Before: the other way round.
         let front = face(counted, counted == Counted::Before);
         let back = face(counted, counted == Counted::Behind);
-        self.make(
+        // What lies before the near plane is behind no surface, so that counting behind needs nothing cut. Counting before begins at
+        // the near plane: between it and the eye there may be a caster's lid that nobody sees, and the eye may be in a shadow.
+        let whole = counted == Counted::Behind && unclipped(device);
+        self.make_clipped(
             device,
             winding,
+            !whole,
             match faces {
                 Faces::Both => None,
                 Faces::Front => Some(wgpu::Face::Back),
@@ -205,6 +209,18 @@ impl VolumePipelines {
         depth_stencil: wgpu::DepthStencilState,
         fragment: Option<wgpu::FragmentState<'_>>,
     ) -> wgpu::RenderPipeline {
+        self.make_clipped(device, winding, !unclipped(device), cull_mode, depth_stencil, fragment)
+    }
+
+    fn make_clipped(
+        &self,
+        device: &wgpu::Device,
+        winding: Winding,
+        clipped: bool,
+        cull_mode: Option<wgpu::Face>,
+        depth_stencil: wgpu::DepthStencilState,
+        fragment: Option<wgpu::FragmentState<'_>>,
+    ) -> wgpu::RenderPipeline {
         let split = [Some(SPLIT_VERTICES)];
         let is_split = self.silhouette == Silhouette::Vertex;
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -222,7 +238,7 @@ impl VolumePipelines {
                     Winding::Turned => wgpu::FrontFace::Cw,
                 },
                 cull_mode,
-                unclipped_depth: unclipped(device),
+                unclipped_depth: !clipped,
                 ..Default::default()
             },
             depth_stencil: Some(depth_stencil),
