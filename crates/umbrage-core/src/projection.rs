@@ -73,7 +73,8 @@ mod tests {
 
     #[test]
     fn without_a_far_plane_nothing_far_is_cut() {
-        let turned = Mat4::from_rotation_y(0.3) * Mat4::from_rotation_x(-0.8) * Mat4::from_translation(Vec3::ONE);
+        let turned =
+            Mat4::from_rotation_y(0.3) * Mat4::from_rotation_x(-0.8) * Mat4::from_translation(Vec3::ONE);
         for depth in DepthConvention::ALL {
             let endless = perspective(0.7, 0.4, 0.5, f32::INFINITY, depth);
             let near = endless.project_point3(Vec3::new(0.0, 0.0, -0.5));

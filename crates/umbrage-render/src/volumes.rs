@@ -126,8 +126,11 @@ impl Volumes {
                     self.extrude_m.max(maths::finite_length_m(&scene_world, light_world, CUT_LENGTHS))
                 };
                 let longest_m = world.lights.iter().map(length_m).fold(0.0, f32::max);
-                let farthest_m =
-                    scene_world.corners().iter().map(|p| p.distance(camera.position_world)).fold(0.0, f32::max);
+                let farthest_m = scene_world
+                    .corners()
+                    .iter()
+                    .map(|p| p.distance(camera.position_world))
+                    .fold(0.0, f32::max);
                 (longest_m + farthest_m).max(camera.far_m)
             }
         };
