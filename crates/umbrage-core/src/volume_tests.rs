@@ -124,3 +124,22 @@ fn what_must_end_ends_behind_scene_and_light() {
     assert!(finite_length_m(&around(Vec3::ONE, 0.0), Vec4::new(0.0, 1.0, 0.0, 0.0), 2.0) > 0.0);
     assert_eq!(finite_length_m(&Aabb::EMPTY, Vec4::W, 2.0), 1.0);
 }
+
+#[test]
+fn a_light_has_a_side_of_what_a_matrix_makes_flat() {
+    let light = Vec4::new(2.0, 3.0, -1.0, 1.0);
+    let place = Mat4::from_translation(Vec3::new(0.3, 1.0, 0.0)) * Mat4::from_rotation_x(0.4);
+    for scale in [Vec3::ONE, Vec3::new(-2.0, 0.5, 1.0), Vec3::new(1e-3, 1e3, 1.0)] {
+        let world_from_object = place * Mat4::from_scale(scale);
+        let found = light_point_object(light, &world_from_object);
+        assert!((world_from_object * found).distance(light) < 1e-4, "{scale}: {found}");
+        assert_eq!(is_mirrored(&world_from_object), scale.x < 0.0);
+    }
+    // Flat along y: only where the light is across that plane counts.
+    for (light, sign) in [(Vec4::new(5.0, 3.0, 0.0, 1.0), 1.0), (Vec4::new(5.0, -3.0, 0.0, 1.0), -1.0)] {
+        let flat = Mat4::from_translation(Vec3::Y) * Mat4::from_scale(Vec3::new(2.0, 0.0, 2.0));
+        assert_eq!(light_point_object(light, &flat), Vec4::Y * sign);
+        let line = Mat4::from_scale(Vec3::X);
+        assert_eq!(light_point_object(light, &line), Vec4::ZERO);
+    }
+}

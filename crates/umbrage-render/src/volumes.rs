@@ -33,7 +33,7 @@ struct OfLight {
     scissor: Option<maths::Scissor>,
 }
 
-/// A mesh, and whether any part of it is open.
+/// A mesh, and whether any part of it casts from both sides.
 #[derive(Debug)]
 struct Shape {
     mesh: Option<VolumeMesh>,
@@ -48,7 +48,7 @@ pub(crate) struct Volumes {
     extrude_m: f32,
     pipelines: VolumePipelines,
     meshes: Vec<Option<VolumeMesh>>,
-    /// For each mesh: is any part of it open?
+    /// For each mesh: casts any part of it from both sides?
     open: Vec<bool>,
     clip_from_world: wgpu::Buffer,
     lights: Vec<OfLight>,
@@ -58,7 +58,7 @@ pub(crate) struct Volumes {
 fn shape(device: &wgpu::Device, pipelines: &VolumePipelines, mesh: &Mesh) -> Shape {
     let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
     let source = VolumeSource { positions: &mesh.positions, adjacency: &adjacency };
-    Shape { mesh: VolumeMesh::new(device, pipelines, &source), is_open: adjacency.counts.open_parts > 0 }
+    Shape { mesh: VolumeMesh::new(device, pipelines, &source), is_open: adjacency.two_sided.contains(&true) }
 }
 
 impl Volumes {
@@ -186,11 +186,14 @@ impl Volumes {
                     both_sides,
                     // What is not closed may be seen from behind, and then its lid is looked through.
                     near_caps: is_behind || both_sides || self.open[placed.mesh],
-                    far_caps: is_behind,
+                    // What ends before the surface is left through its far lid.
+                    far_caps: is_behind || self.extrude_m > 0.0,
                     winding: VolumeCaster::winding_of(&placed.world_from_object),
                 });
             }
             let of_light = &mut self.lights[index];
+            let kept = of_light.volumes.as_ref().map_or(&[][..], VolumeLight::casters);
+            casters.iter_mut().zip(kept).for_each(|(caster, kept)| *caster = caster.keeping_lids(kept));
             (of_light.draw, of_light.scissor) = (draw, scissor);
             if of_light.volumes.as_ref().is_none_or(|volumes| volumes.casters() != casters) {
                 of_light.volumes = VolumeLight::new(
