@@ -3,7 +3,7 @@
 use crate::bounds::Aabb;
 use crate::frustum::Frustum;
 use crate::light::{Light, LightKind};
-use glam::{Mat4, UVec2, Vec3, Vec4, Vec4Swizzles};
+use glam::{DMat3, DVec3, Mat4, UVec2, Vec3, Vec4, Vec4Swizzles};
 
 /// A light as volumes are pulled from it: its place and 1, or the direction towards it and 0. World space.
 pub fn light_point_world(light: &Light) -> Vec4 {
@@ -14,8 +14,27 @@ pub fn light_point_world(light: &Light) -> Vec4 {
 }
 
 /// The same in a caster's object space, so that `dot(plane, light)` tells whether a triangle faces it. Computed in 64 bits.
+///
+/// By the adjugate, so that a matrix without inverse will do: what it makes flat is lit from across, as if it were very thin.
+/// Zero for what it makes a line or a point: nothing of that faces anything.
 pub fn light_point_object(light_world: Vec4, world_from_object: &Mat4) -> Vec4 {
-    (world_from_object.as_dmat4().inverse() * light_world.as_dvec4()).as_vec4()
+    let [x, y, z, origin] = columns(world_from_object);
+    let volume = x.dot(y.cross(z));
+    let from_origin = light_world.xyz().as_dvec3() - origin * f64::from(light_world.w);
+    let across = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)).transpose() * from_origin;
+    let light = across.extend(volume * f64::from(light_world.w)) * if volume < 0.0 { -1.0 } else { 1.0 };
+    let place = (light / volume.abs()).as_vec4();
+    if place.is_finite() { place } else { light.normalize_or_zero().as_vec4() }
+}
+
+/// Does a transform mirror? In 64 bits, and by the number that [`light_point_object`] asks: where rounding decides, both say the same.
+pub fn is_mirrored(world_from_object: &Mat4) -> bool {
+    let [x, y, z, _] = columns(world_from_object);
+    x.dot(y.cross(z)) < 0.0
+}
+
+fn columns(m: &Mat4) -> [DVec3; 4] {
+    [m.x_axis, m.y_axis, m.z_axis, m.w_axis].map(|column| column.xyz().as_dvec3())
 }
 
 /// May a light be inside of a caster, or on it? Then its closed parts have to cast from both sides.
@@ -115,6 +134,21 @@ pub fn far_plane_world(
 /// May the eye see any of what a caster darkens? `frustum` is the eye's. True when in doubt.
 pub fn shadow_may_be_seen(frustum: &Frustum, light_world: Vec4, caster_world: &Aabb) -> bool {
     frustum.may_see_swept(caster_world, |p| p * light_world.w - light_world.xyz())
+}
+
+/// How long volumes are made where they cannot be without end, metres: so often the scene, light included.
+///
+/// A parallel eye sees every infinitely far point at the same place, so that no far lid covers its picture; and an end that a far
+/// plane cuts is none. What is `times` as long ends behind all that is seen, but for a light nearer than a `times`-th of a
+/// triangle's width to the triangle's plane.
+pub fn finite_length_m(scene_world: &Aabb, light_world: Vec4, times: f32) -> f32 {
+    let light = light_world.xyz();
+    let all = if light_world.w == 0.0 {
+        *scene_world
+    } else {
+        Aabb { min: scene_world.min.min(light), max: scene_world.max.max(light) }
+    };
+    if scene_world.is_empty() { 1.0 } else { times * all.size().length().max(f32::MIN_POSITIVE) }
 }
 
 /// Pixels: left, top, width, height.

@@ -150,3 +150,32 @@ fn a_volume_over_a_floor_ends_below_it() {
     let other = far_plane_world(&lamp, &block, &scene, &[Vec3::NEG_Y]).expect("a wall");
     assert!(other.xyz() != Vec3::NEG_Y, "{other}");
 }
+
+#[test]
+fn what_must_end_ends_behind_scene_and_light() {
+    let scene = around(Vec3::ZERO, 1.0);
+    let sun = finite_length_m(&scene, Vec4::new(0.0, 900.0, 0.0, 0.0), 2.0);
+    assert!((sun - 2.0 * 12f32.sqrt()).abs() < 1e-4, "a direction is no place: {sun}");
+    assert!(finite_length_m(&scene, Vec4::new(0.0, 9.0, 0.0, 1.0), 2.0) > 20.0);
+    assert!(finite_length_m(&around(Vec3::ONE, 0.0), Vec4::new(0.0, 1.0, 0.0, 0.0), 2.0) > 0.0);
+    assert_eq!(finite_length_m(&Aabb::EMPTY, Vec4::W, 2.0), 1.0);
+}
+
+#[test]
+fn a_light_has_a_side_of_what_a_matrix_makes_flat() {
+    let light = Vec4::new(2.0, 3.0, -1.0, 1.0);
+    let place = Mat4::from_translation(Vec3::new(0.3, 1.0, 0.0)) * Mat4::from_rotation_x(0.4);
+    for scale in [Vec3::ONE, Vec3::new(-2.0, 0.5, 1.0), Vec3::new(1e-3, 1e3, 1.0)] {
+        let world_from_object = place * Mat4::from_scale(scale);
+        let found = light_point_object(light, &world_from_object);
+        assert!((world_from_object * found).distance(light) < 1e-4, "{scale}: {found}");
+        assert_eq!(is_mirrored(&world_from_object), scale.x < 0.0);
+    }
+    // Flat along y: only where the light is across that plane counts.
+    for (light, sign) in [(Vec4::new(5.0, 3.0, 0.0, 1.0), 1.0), (Vec4::new(5.0, -3.0, 0.0, 1.0), -1.0)] {
+        let flat = Mat4::from_translation(Vec3::Y) * Mat4::from_scale(Vec3::new(2.0, 0.0, 2.0));
+        assert_eq!(light_point_object(light, &flat), Vec4::Y * sign);
+        let line = Mat4::from_scale(Vec3::X);
+        assert_eq!(light_point_object(light, &line), Vec4::ZERO);
+    }
+}

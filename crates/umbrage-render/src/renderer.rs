@@ -237,7 +237,8 @@ impl<'a> Renderer<'a> {
         }
         let (gpu, world) = (self.gpu, Arc::clone(&self.world));
         let shown = shown_view(&world.lights, &set.lights, &self.options)?;
-        let eye = Eye::new(&world.camera, &self.options, shown.as_ref().map(|(light, view)| (*light, view)));
+        let camera = self.volumes.as_ref().map_or(world.camera, |volumes| volumes.camera(gpu, &world));
+        let eye = Eye::new(&camera, &self.options, shown.as_ref().map(|(light, view)| (*light, view)));
         let frustum = Frustum::from_clip(eye.clip_from_world, DEPTH);
         let mut instances = Vec::new();
         self.solid = world.items.solid(&frustum, &mut instances);

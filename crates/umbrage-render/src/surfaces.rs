@@ -46,12 +46,16 @@ impl Renderer<'_> {
     /// are not among them.
     ///
     /// # Errors
-    /// [`RenderError::View`] when the picture is lit as it is drawn, which needs no surfaces; [`RenderError::Gpu`] when the
-    /// device is lost.
+    /// [`RenderError::View`] when the picture is lit as it is drawn, which needs no surfaces, or when its depth cannot be copied
+    /// (24 bits, with a stencil, on devices without `DEPTH32FLOAT_STENCIL8`); [`RenderError::Gpu`] when the device is lost.
     pub fn surfaces(&self) -> Result<Vec<Option<DrawnSurface>>, RenderError> {
         let Some([gbuffer, depth]) = &self.targets.surfaces else {
             return Err(RenderError::View("this picture is lit as it is drawn and keeps no surfaces".into()));
         };
+        if depth.format() == wgpu::TextureFormat::Depth24PlusStencil8 {
+            let message = "24-bit depth cannot be copied, and this device has no other with a stencil; use another technique";
+            return Err(RenderError::View(message.into()));
+        }
         let (packed, depth) = (readback::texture(self.gpu, gbuffer)?, readback::texture(self.gpu, depth)?);
         let world_from_clip = self.clip_from_world.as_dmat4().inverse();
         let size = self.options.size;

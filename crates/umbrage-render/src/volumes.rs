@@ -12,14 +12,19 @@ use umbrage::core::edges::Adjacency;
 use umbrage::core::technique::volume::{Soften, Volume};
 use umbrage::core::technique::{Method, Settings};
 use umbrage::core::volume as maths;
-use umbrage::core::{DEPTH, Frustum};
+use umbrage::core::{Camera, DEPTH, Frustum, Projection};
 use umbrage::soften::{SoftenedV, Softener, Softness, record_soften, soften};
 use umbrage::volume::{
     Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, Winding,
     count_volumes, draw_volumes, find_silhouettes, record_counts, record_silhouettes, record_visibility,
     write_visibility,
 };
-use umbrage_scene::{Mesh, Scene};
+use umbrage_scene::{Mesh, Scene, SceneLight};
+
+/// A parallel eye's volumes are so many times as long as the scene; and where the far plane is moved behind their ends, which costs
+/// depth its precision, so many times.
+const LENGTHS: f32 = 1e5;
+const CUT_LENGTHS: f32 = 64.0;
 
 /// What a light sees of edges, counted by the GPU.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,7 +53,7 @@ struct OfLight {
     scissor: Option<maths::Scissor>,
 }
 
-/// A mesh, and whether any part of it is open.
+/// A mesh, and whether any part of it casts from both sides.
 #[derive(Debug)]
 struct Shape {
     mesh: Option<VolumeMesh>,
@@ -63,7 +68,7 @@ pub(crate) struct Volumes {
     extrude_m: f32,
     pipelines: VolumePipelines,
     meshes: Vec<Option<VolumeMesh>>,
-    /// For each mesh: is any part of it open?
+    /// For each mesh: casts any part of it from both sides?
     open: Vec<bool>,
     clip_from_world: wgpu::Buffer,
     lights: Vec<OfLight>,
@@ -82,7 +87,7 @@ struct Soft {
 fn shape(device: &wgpu::Device, pipelines: &VolumePipelines, mesh: &Mesh) -> Shape {
     let adjacency = Adjacency::new(&mesh.positions, &mesh.indices);
     let source = VolumeSource { positions: &mesh.positions, adjacency: &adjacency };
-    Shape { mesh: VolumeMesh::new(device, pipelines, &source), is_open: adjacency.counts.open_parts > 0 }
+    Shape { mesh: VolumeMesh::new(device, pipelines, &source), is_open: adjacency.two_sided.contains(&true) }
 }
 
 impl Volumes {
@@ -156,6 +161,33 @@ impl Volumes {
         }
     }
 
+    /// The camera that volumes can be counted for: where a far plane would cut them, one without, and for a parallel eye one that is
+    /// beyond their ends.
+    pub fn camera(&self, gpu: &Gpu, world: &World) -> Camera {
+        let camera = world.camera;
+        if umbrage::caster::unclipped(&gpu.device) {
+            return camera;
+        }
+        let far_m = match camera.projection {
+            Projection::Perspective { .. } => f32::INFINITY,
+            Projection::Orthographic { .. } => {
+                let scene_world = world.items.whole();
+                let length_m = |placed: &SceneLight| {
+                    let light_world = maths::light_point_world(&placed.light);
+                    self.extrude_m.max(maths::finite_length_m(&scene_world, light_world, CUT_LENGTHS))
+                };
+                let longest_m = world.lights.iter().map(length_m).fold(0.0, f32::max);
+                let farthest_m = scene_world
+                    .corners()
+                    .iter()
+                    .map(|p| p.distance(camera.position_world))
+                    .fold(0.0, f32::max);
+                (longest_m + farthest_m).max(camera.far_m)
+            }
+        };
+        Camera { far_m, ..camera }
+    }
+
     /// Lists what is drawn of the world from where it is seen. Faces that hold are kept.
     pub fn tell(
         &mut self,
@@ -175,10 +207,17 @@ impl Volumes {
         let frustum = Frustum::from_clip(clip_from_world, DEPTH);
         let near_world = maths::near_corners_world(clip_from_world, DEPTH.ndc_near());
         let scene_world = world.items.whole();
+        let is_parallel = matches!(world.camera.projection, Projection::Orthographic { .. });
+        let lengths = if umbrage::caster::unclipped(&gpu.device) { LENGTHS } else { CUT_LENGTHS };
         for (index, placed) in world.lights.iter().enumerate().take(self.lights.len()) {
             let light = &placed.light;
             let light_world = maths::light_point_world(light);
             let scissor = maths::lit_pixels(light, &scene_world, clip_from_world, size);
+            let extrude_m = if is_parallel && self.extrude_m <= 0.0 {
+                maths::finite_length_m(&scene_world, light_world, lengths)
+            } else {
+                self.extrude_m
+            };
             let mut draw = Vec::new();
             let mut casters = Vec::new();
             for placed in world.items.volume_casters(light, all_casters) {
@@ -202,17 +241,20 @@ impl Volumes {
                     world_from_object: placed.world_from_object,
                     light_world,
                     inset_m: self.inset_m,
-                    extrude_m: self.extrude_m,
+                    // A plane behind all that is seen goes before a length.
+                    extrude_m: if far_plane_world.is_some() { self.extrude_m } else { extrude_m },
                     far_plane_world,
                     both_sides,
                     // What is not closed may be seen from behind, and then its lid is looked through.
                     near_caps: is_behind || both_sides || self.open[placed.mesh],
-                    // A volume of a set length may be looked into from behind.
+                    // What ends before the surface is left through its far lid.
                     far_caps: is_behind || self.extrude_m > 0.0,
                     winding: VolumeCaster::winding_of(&placed.world_from_object),
                 });
             }
             let of_light = &mut self.lights[index];
+            let kept = of_light.volumes.as_ref().map_or(&[][..], VolumeLight::casters);
+            casters.iter_mut().zip(kept).for_each(|(caster, kept)| *caster = caster.keeping_lids(kept));
             (of_light.draw, of_light.scissor) = (draw, scissor);
             if of_light.volumes.as_ref().is_none_or(|volumes| volumes.casters() != casters) {
                 of_light.volumes = VolumeLight::new(

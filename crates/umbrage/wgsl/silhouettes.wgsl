@@ -49,11 +49,13 @@ fn silhouettes(
     var b = 0u;
     var c = 0u;
     var count = 0u;
+    var runs_back = false;
     let of_quad = select(6u, 3u, (caster.flags & ENDS_IN_A_POINT) != 0u);
     if is_edge {
         let edge = edges[item];
         let times = multiplicity(edge);
         quads = u32(abs(times));
+        runs_back = times < 0;
         a = select(edge.y, edge.x, times > 0);
         b = select(edge.x, edge.y, times > 0);
         count = quads * of_quad;
@@ -89,18 +91,32 @@ fn silhouettes(
     workgroupBarrier();
     at += caster.first_index + start;
 
-    // 3. The faces, counter-clockwise seen from outside.
+    // 3. The faces, counter-clockwise seen from outside. They begin at the corner that `split.rs` begins at, and so get the same depths:
+    // at `a` where the edge runs as it is, far from `b` where it runs back; what is there twice is once cut along the other diagonal.
     for (var i = 0u; i < quads; i++) {
-        indices[at] = 2u * a;
-        indices[at + 1u] = 2u * a + 1u;
-        indices[at + 2u] = 2u * b + 1u;
+        let near = vec2u(2u * a, 2u * b);
+        let far = near + 1u;
+        var first = vec3u(near.x, far.x, far.y);
+        var second = vec3u(near.x, far.y, near.y);
+        if runs_back {
+            first = vec3u(far.y, near.x, far.x);
+            second = vec3u(far.y, near.y, near.x);
+        }
+        if i == 1u {
+            first = select(vec3u(near.x, far.x, near.y), vec3u(far.x, near.y, near.x), runs_back);
+            second = select(vec3u(near.y, far.x, far.y), vec3u(far.y, near.y, far.x), runs_back);
+        }
         // Parallel light without end: both far ends are one place, and a triangle is all.
+        if of_quad == 3u {
+            first = select(vec3u(near.x, far.x, near.y), vec3u(far.y, near.y, near.x), runs_back);
+        }
+        indices[at] = first.x;
+        indices[at + 1u] = first.y;
+        indices[at + 2u] = first.z;
         if of_quad == 6u {
-            indices[at + 3u] = 2u * a;
-            indices[at + 4u] = 2u * b + 1u;
-            indices[at + 5u] = 2u * b;
-        } else {
-            indices[at + 2u] = 2u * b;
+            indices[at + 3u] = second.x;
+            indices[at + 4u] = second.y;
+            indices[at + 5u] = second.z;
         }
         at += of_quad;
     }

@@ -22,8 +22,8 @@ pub struct Adjacency {
     /// Plane of each triangle: unit normal and minus the distance from the origin, so that `dot(plane, (p, 1))` is above 0
     /// in front, metres. Computed in 64 bits. Zero where a triangle has no area, or one beyond all numbers.
     pub planes: Vec<Vec4>,
-    /// For each triangle: is its part open? A part is all that is connected through edges. What is open has to cast from
-    /// both sides, see [`Adjacency::silhouette`].
+    /// For each triangle: is its part open, or turned inside out (as rooms are: its volume is below 0)? A part is all that is connected
+    /// through edges. Such a part has to cast from both sides, see [`Adjacency::silhouette`].
     pub two_sided: Vec<bool>,
     /// Where triangles meet, and where they should. Sorted by lower, then by higher vertex.
     pub edges: Vec<Edge>,
@@ -106,9 +106,18 @@ impl Adjacency {
             open_parts: open.iter().filter(|open| **open).count(),
         };
         let corner = |i: u32| positions[i as usize].as_dvec3();
+        let mut volumes = vec![(None, 0.0); open.len()];
+        for (t, part) in triangles.iter().zip(&part_of) {
+            let (origin, volume) = &mut volumes[*part as usize];
+            // A closed part's volume is the same from everywhere, and most exact from a place on it.
+            let origin = *origin.get_or_insert(corner(t[0]));
+            let [a, b, c] = t.map(|i| corner(i) - origin);
+            *volume += a.dot(b.cross(c));
+        }
+        let casts_twice = |part: &u32| open[*part as usize] || volumes[*part as usize].1 < 0.0;
         Self {
             planes: triangles.iter().map(|t| plane(t.map(corner))).collect(),
-            two_sided: part_of.iter().map(|part| open[*part as usize]).collect(),
+            two_sided: part_of.iter().map(casts_twice).collect(),
             edges: pairs.iter().map(edge).collect(),
             triangles,
             counts,

@@ -3,7 +3,7 @@
 use super::{VolumeMesh, VolumePipelines};
 use glam::{Mat4, Vec4};
 use std::num::NonZeroU64;
-use umbrage_core::volume::light_point_object;
+use umbrage_core::volume::{is_mirrored, light_point_object};
 
 /// Which way round the front of a caster's triangles runs on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,7 +28,7 @@ pub struct VolumeCaster {
     pub mesh: usize,
     /// Counts how often the mesh got another shape: a volume holds as long as this and all else here.
     pub version: u64,
-    /// Affine, with an inverse.
+    /// Affine.
     pub world_from_object: Mat4,
     /// The light: see [`umbrage_core::volume::light_point_world`].
     pub light_world: Vec4,
@@ -54,9 +54,21 @@ impl VolumeCaster {
         self.near_caps || self.far_caps
     }
 
+    /// With the lids of `kept` too, if that is the same caster otherwise: faces that were found with lids are right without need for
+    /// them, and need not be found again when the eye leaves a shadow.
+    pub fn keeping_lids(self, kept: &Self) -> Self {
+        let lids = Self { near_caps: kept.near_caps, far_caps: kept.far_caps, ..self };
+        let both = Self {
+            near_caps: self.near_caps || kept.near_caps,
+            far_caps: self.far_caps || kept.far_caps,
+            ..self
+        };
+        if lids == *kept { both } else { self }
+    }
+
     /// The winding of a transform.
     pub fn winding_of(world_from_object: &Mat4) -> Winding {
-        if world_from_object.determinant() < 0.0 { Winding::Turned } else { Winding::AsIs }
+        if is_mirrored(world_from_object) { Winding::Turned } else { Winding::AsIs }
     }
 
     /// Parallel light without end: all of the volume's far end is one place.

@@ -6,6 +6,7 @@ use super::{Counted, Faces, Winding};
 use crate::caster::unclipped;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
+use umbrage_core::DEPTH;
 use umbrage_core::technique::volume::Silhouette;
 use umbrage_core::wgsl::assemble;
 
@@ -76,6 +77,14 @@ fn face(counted: Counted, up: bool) -> wgpu::StencilFaceState {
         Counted::Before => (Keep, op),
     };
     wgpu::StencilFaceState { compare: wgpu::CompareFunction::Always, fail_op: Keep, depth_fail_op, pass_op }
+}
+
+/// Moves faces away from the eye by what the depths of a lid and of its surface may differ in where they are drawn in another
+/// order, turned or clipped: some steps of the format, and where a plane is steep the rounding of its slope over a wide picture.
+/// No edge of a shadow moves by more than a thirty-second of a pixel.
+fn behind() -> wgpu::DepthBiasState {
+    let away = DEPTH.away();
+    wgpu::DepthBiasState { constant: 8 * away as i32, slope_scale: 0.0, clamp: 0.0 }
 }
 
 impl VolumePipelines {
@@ -162,9 +171,13 @@ impl VolumePipelines {
     ) -> wgpu::RenderPipeline {
         let front = face(counted, counted.front_counts_up());
         let back = face(counted, !counted.front_counts_up());
-        self.make(
+        // What lies before the near plane is behind no surface, so that counting behind needs nothing cut. Counting before begins at
+        // the near plane: between it and the eye there may be a caster's lid that nobody sees, and the eye may be in a shadow.
+        let whole = counted == Counted::Behind && unclipped(device);
+        self.make_clipped(
             device,
             winding,
+            !whole,
             match faces {
                 Faces::Both => None,
                 Faces::Front => Some(wgpu::Face::Back),
@@ -176,7 +189,7 @@ impl VolumePipelines {
                 // Both ways to count have one test, and differ in what they do with its outcome.
                 depth_compare: Some(Counted::Before.depth_compare()),
                 stencil: wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff },
-                bias: Default::default(),
+                bias: behind(),
             },
             None,
         )
@@ -187,6 +200,18 @@ impl VolumePipelines {
         &self,
         device: &wgpu::Device,
         winding: Winding,
+        cull_mode: Option<wgpu::Face>,
+        depth_stencil: wgpu::DepthStencilState,
+        fragment: Option<wgpu::FragmentState<'_>>,
+    ) -> wgpu::RenderPipeline {
+        self.make_clipped(device, winding, !unclipped(device), cull_mode, depth_stencil, fragment)
+    }
+
+    fn make_clipped(
+        &self,
+        device: &wgpu::Device,
+        winding: Winding,
+        clipped: bool,
         cull_mode: Option<wgpu::Face>,
         depth_stencil: wgpu::DepthStencilState,
         fragment: Option<wgpu::FragmentState<'_>>,
@@ -208,7 +233,7 @@ impl VolumePipelines {
                     Winding::Turned => wgpu::FrontFace::Cw,
                 },
                 cull_mode,
-                unclipped_depth: unclipped(device),
+                unclipped_depth: !clipped,
                 ..Default::default()
             },
             depth_stencil: Some(depth_stencil),
