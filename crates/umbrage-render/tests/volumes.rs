@@ -1,143 +1,28 @@
-//! Shadow volumes: however they are found and counted, the picture is one; what holds is kept; and no input spoils it.
+//! Shadow volumes: however they are found and counted, the picture is one, and what holds is kept.
 
 mod common;
 
-use common::scenes::{builtin, cut_out, over_floor, sheet, sun_of, with_light};
+use common::scenes::{builtin, cut_out, sun_of, with_light};
+use common::volumes::*;
 use common::{gpu, settings};
-use glam::{Mat4, Quat, UVec2, Vec3};
-use umbrage_render::umbrage::core::{Aabb, Camera, Light, LightKind, Projection};
+use glam::{Mat4, Vec3};
+use umbrage_render::umbrage::core::{Aabb, Camera, Light, Projection};
 use umbrage_render::{FrameReport, Gpu, MAX_LIGHTS, Measure, RenderOptions, Renderer, View};
-use umbrage_scene::{AlphaMode, Material, Mesh, Scene, SceneLight};
+use umbrage_scene::{AlphaMode, Instance, Material, Mesh, Scene, SceneLight};
 
-const SIDE: u32 = 128;
 /// Pixels that another depth format may answer otherwise: a thousandth.
 const MOST_OFF: usize = 16;
-
-fn options(pairs: &[(&str, &str)]) -> RenderOptions {
-    let size = UVec2::splat(SIDE);
-    RenderOptions { size, view: View::Visibility, ..RenderOptions::new(settings("volume", pairs)) }
-}
-
-fn visibility_with(gpu: &Gpu, scene: &Scene, options: RenderOptions) -> Vec<f32> {
-    let mut renderer = Renderer::new(gpu, scene, &scene.cameras[0].camera, options).expect("a renderer");
-    renderer.frame(Measure::Frame).expect("a frame");
-    let v = renderer.visibility().expect("V");
-    assert!(v.iter().all(|v| (0.0..=1.0).contains(v)), "V is no visibility");
-    v
-}
-
-fn visibility(gpu: &Gpu, scene: &Scene, pairs: &[(&str, &str)]) -> Vec<f32> {
-    visibility_with(gpu, scene, options(pairs))
-}
-
-/// The same pixels by another technique.
-fn by(gpu: &Gpu, scene: &Scene, technique: &str, pairs: &[(&str, &str)]) -> Vec<f32> {
-    let options = RenderOptions { settings: settings(technique, pairs), ..options(&[]) };
-    visibility_with(gpu, scene, options)
-}
-
-/// Pixels in which two answers are not the same.
-fn off(a: &[f32], b: &[f32]) -> usize {
-    a.iter().zip(b).filter(|(a, b)| (*a - *b).abs() > 0.5).count()
-}
-
-/// Pixels that the light would reach and does not.
-fn dark(gpu: &Gpu, scene: &Scene, v: &[f32]) -> usize {
-    let plain = by(gpu, scene, "unshadowed", &[]);
-    v.iter().zip(plain).filter(|(v, plain)| **v < 0.5 && *plain > 0.5).count()
-}
-
-fn kinds(light: Light) -> [Light; 3] {
-    let parallel = LightKind::Directional;
-    let sun = Light { kind: parallel, intensity: 3.0, near_m: None, far_m: None, ..light };
-    [light, Light { kind: LightKind::Point, ..light }, sun]
-}
-
-/// A mesh of positions and triangles, with normals that nobody looks at.
-fn mesh(positions: &[Vec3], indices: &[u32]) -> Mesh {
-    Mesh {
-        name: "made".into(),
-        normals: vec![Vec3::Y; positions.len()],
-        bounds: Aabb::from_points(positions.iter().copied()),
-        positions: positions.to_vec(),
-        indices: indices.to_vec(),
-        ..Mesh::default()
-    }
-}
-
-/// A box around the origin; `faces` of its six are there: -x, +x, -y, +y, -z, +z.
-fn cuboid(half: Vec3, faces: &[usize]) -> Mesh {
-    let corner = |i: u32| {
-        half * Vec3::new(
-            if i & 1 == 0 { -1.0 } else { 1.0 },
-            if i & 2 == 0 { -1.0 } else { 1.0 },
-            if i & 4 == 0 { -1.0 } else { 1.0 },
-        )
-    };
-    const QUADS: [[u32; 4]; 6] =
-        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let triangles = |face: &usize| {
-        let [a, b, c, d] = QUADS[*face];
-        [a, b, c, a, c, d]
-    };
-    let positions: Vec<Vec3> = (0..8).map(corner).collect();
-    Mesh {
-        name: "box".into(),
-        normals: positions.iter().map(|p| p.normalize()).collect(),
-        ..mesh(&positions, &faces.iter().flat_map(triangles).collect::<Vec<_>>())
-    }
-}
-
-const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
-
-/// Both sides are seen.
-fn thin() -> Material {
-    Material { double_sided: true, ..Material::default() }
-}
-
-fn placed(meshes: Vec<Mesh>, placed: &[(usize, Mat4)]) -> Scene {
-    over_floor(vec![thin()], vec![], meshes, placed)
-}
-
-fn above(y: f32) -> Mat4 {
-    Mat4::from_translation(Vec3::Y * y)
-}
-
-/// Closed and open, mirrored, turned and stretched.
-fn mixture() -> Scene {
-    let torus = builtin("torus").meshes.into_iter().find(|m| m.name == "torus").expect("a torus");
-    let shift = |x: f32, y: f32, z: f32| Mat4::from_translation(Vec3::new(x, y, z));
-    let turn = |angle: f32| Mat4::from_quat(Quat::from_axis_angle(Vec3::new(0.6, 0.8, 0.0), angle));
-    let scale = |x: f32, y: f32, z: f32| Mat4::from_scale(Vec3::new(x, y, z));
-    let half = Vec3::splat(0.4);
-    placed(
-        vec![
-            Mesh { material: 0, tangents: vec![], ..torus },
-            cuboid(half, &ALL),
-            cuboid(half, &[0, 1, 2, 4, 5]),
-            sheet(Vec3::ZERO, Vec3::X * 0.5, Vec3::Y * 0.4, 0),
-        ],
-        &[
-            (0, shift(-1.4, 0.9, -0.6) * turn(0.4) * scale(0.6, 0.6, 0.6)),
-            (0, shift(1.2, 0.8, -1.3) * turn(1.1) * scale(-0.5, 1.1, 0.7)),
-            (1, shift(0.2, 0.7, 0.9) * turn(0.7) * scale(1.0, 0.4, 1.6)),
-            (1, shift(-1.2, 0.6, 1.2) * turn(2.0) * scale(1.0, 1.0, -1.0)),
-            (2, shift(1.5, 0.7, 0.8) * turn(0.2)),
-            (2, shift(0.1, 1.4, -1.0) * turn(-0.9) * scale(-0.8, 0.5, 1.0)),
-            (3, shift(-0.5, 1.7, 0.0) * turn(1.2)),
-        ],
-    )
-}
 
 #[test]
 fn every_way_draws_the_same_picture() {
     let Some(gpu) = gpu() else { return };
     let mut inside = mixture();
     let shell = Mat4::from_translation(Vec3::new(-1.0, 3.0, 1.0)) * Mat4::from_rotation_z(0.4);
-    inside.instances.push(umbrage_scene::Instance {
+    inside.instances.push(Instance {
         name: "around the light".into(),
         mesh: 2,
         world_from_object: shell,
+        ..Instance::default()
     });
     let lamp = Light { position_world: Vec3::new(-1.0, 3.0, 1.0), ..kinds(inside.lights[0].light)[1] };
     let mut scenes: Vec<(&str, Scene)> =
@@ -306,10 +191,10 @@ fn what_has_holes_or_is_moved_is_drawn_by_a_map() {
     // Alone, it is what the map says; a solid beside it is a volume's.
     assert_eq!(renderer.visibility().expect("V"), by_linear);
     scene.meshes.push(Mesh { material: 1, ..cuboid(Vec3::splat(0.3), &ALL) });
-    scene.instances.push(umbrage_scene::Instance {
-        name: String::new(),
+    scene.instances.push(Instance {
         mesh: 2,
         world_from_object: Mat4::from_translation(Vec3::new(2.0, 0.8, -1.0)),
+        ..Instance::default()
     });
     let both = visibility(&gpu, &scene, &map);
     let joined = off(&both, &by(&gpu, &scene, "linear", &map));
@@ -361,164 +246,6 @@ fn what_is_lit_as_it_is_drawn_has_shadows() {
         let (bare, linear) = (differ(&shot("unshadowed").1), differ(&shot("linear").1));
         println!("{name}: {bare} pixels are darker for shadows, {linear} differ from those of a map");
         assert!(bare > 400 && linear * 4 < bare, "{name}: {bare} {linear}");
-    }
-}
-
-/// Whatever the mesh: the count above 0 exactly where a map of two-sided triangles is dark.
-#[test]
-fn meshes_that_are_none() {
-    let Some(gpu) = gpu() else { return };
-    let corners = [Vec3::new(-0.8, 0.0, 0.6), Vec3::new(0.8, 0.1, 0.6), Vec3::new(0.0, 0.3, -0.8)];
-    let turned_out = {
-        let mut mesh = cuboid(Vec3::splat(0.5), &ALL);
-        mesh.indices.chunks_exact_mut(3).for_each(|t| t.swap(0, 1));
-        mesh
-    };
-    let with_rubbish = {
-        let mut mesh = cuboid(Vec3::splat(0.5), &ALL);
-        mesh.indices.extend([0, 0, 1, 2, 2, 2, 3, 1, 3]);
-        mesh.positions.extend([Vec3::new(0.5, 0.5, 0.5), Vec3::new(0.5, 0.0, 0.5)]);
-        mesh.normals.extend([Vec3::Y; 2]);
-        // No area: three places on a line.
-        mesh.indices.extend([7, 9, 5, 8, 9, 5]);
-        mesh
-    };
-    let twice = {
-        let mut mesh = cuboid(Vec3::splat(0.5), &ALL);
-        mesh.indices.extend(mesh.indices.clone());
-        mesh
-    };
-    let fan = mesh(
-        &[Vec3::new(0.0, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0), Vec3::X, Vec3::NEG_X, Vec3::Z],
-        &[0, 1, 2, 0, 1, 3, 0, 1, 4],
-    );
-    let nothing = mesh(&corners, &[]);
-    let point = mesh(&[Vec3::ZERO; 3], &[0, 1, 2]);
-    let some = |mesh: Mesh| placed(vec![mesh], &[(0, above(0.9))]);
-    for (name, scene, least) in [
-        ("one triangle", some(mesh(&corners, &[0, 1, 2])), 100),
-        ("one triangle from behind", some(mesh(&corners, &[0, 2, 1])), 100),
-        ("both sides of a triangle", some(mesh(&corners, &[0, 1, 2, 0, 2, 1])), 100),
-        ("a triangle twice", some(mesh(&corners, &[0, 1, 2, 0, 1, 2])), 100),
-        ("degenerate faces", some(with_rubbish), 100),
-        ("every face twice", some(twice), 100),
-        ("inside out", some(turned_out), 100),
-        ("a box without lid", some(cuboid(Vec3::splat(0.5), &[0, 1, 2, 4, 5])), 100),
-        ("two sides of a box", some(cuboid(Vec3::splat(0.5), &[0, 3])), 100),
-        ("three sheets at an edge", some(fan), 50),
-        ("no triangle", some(nothing), 0),
-        ("a point", some(point), 0),
-    ] {
-        for light in kinds(scene.lights[0].light) {
-            let scene = with_light(scene.clone(), light);
-            let v = visibility(&gpu, &scene, &[]);
-            let shadow = dark(&gpu, &scene, &v);
-            let map = by(&gpu, &scene, "linear", &[("map_size", "2048")]);
-            let off = off(&v, &map);
-            println!("{name} {}: {shadow} dark, {off} differ from a map", light.kind.id());
-            assert!(shadow >= least, "{name}: {shadow}");
-            assert!(off <= 20, "{name} {}: {off} differ from a map", light.kind.id());
-            for pairs in [[("silhouette", "vertex")], [("counting", "depth-fail")]] {
-                assert_eq!(v, visibility(&gpu, &scene, &pairs), "{name} {}: {pairs:?}", light.kind.id());
-            }
-        }
-    }
-}
-
-/// A room seen from inside, one-sided, and the light outside of it; then a volume that ends.
-#[test]
-fn rooms_are_dark_and_short_volumes_end() {
-    let Some(gpu) = gpu() else { return };
-    let mut room = cuboid(Vec3::new(3.5, 2.0, 3.5), &ALL);
-    room.indices.chunks_exact_mut(3).for_each(|t| t.swap(0, 1));
-    let scene = over_floor(vec![Material::default()], vec![], vec![room], &[(0, above(1.9))]);
-    for light in kinds(Light::spot(Vec3::new(-2.0, 9.0, 2.0), Vec3::ZERO, 0.5, 0.6)) {
-        let mut scene = with_light(scene.clone(), light);
-        let (eye, target) = (Vec3::new(2.0, 2.0, 2.5), Vec3::new(-1.0, 0.0, -1.0));
-        scene.cameras[0].camera = Camera::look_at(eye, target, 1.2, 0.05, 40.0);
-        let v = visibility(&gpu, &scene, &[]);
-        assert_eq!(v.iter().filter(|v| **v > 0.5).count(), 0, "{}: light in the room", light.kind.id());
-        assert_eq!(v, visibility(&gpu, &scene, &[("silhouette", "vertex")]), "{}", light.kind.id());
-    }
-    let scene = placed(vec![cuboid(Vec3::splat(0.4), &ALL)], &[(0, above(2.5))]);
-    let long = dark(&gpu, &scene, &visibility(&gpu, &scene, &[]));
-    for (length, least, most) in [("0.5", 0, 0), ("40", long, long)] {
-        for counting in ["auto", "depth-fail", "depth-pass"] {
-            for silhouette in ["compute", "vertex"] {
-                let pairs = [("extrude_m", length), ("counting", counting), ("silhouette", silhouette)];
-                let dark = dark(&gpu, &scene, &visibility(&gpu, &scene, &pairs));
-                assert!((least..=most).contains(&dark), "{pairs:?}: {dark} of {long}");
-            }
-        }
-    }
-}
-
-/// Flat by its matrix, a line by its matrix, and nothing.
-#[test]
-fn matrices_without_inverse() {
-    let Some(gpu) = gpu() else { return };
-    let turn = Mat4::from_rotation_x(0.3);
-    for (name, scale, least) in [
-        ("flat", Vec3::new(1.0, 0.0, 1.0), 100),
-        ("flat and mirrored", Vec3::new(-1.0, 0.0, 1.0), 100),
-        ("a line", Vec3::new(1.0, 0.0, 0.0), 0),
-        ("a point", Vec3::ZERO, 0),
-    ] {
-        for faces in [&ALL[..], &[0, 1, 2, 4, 5]] {
-            let scene = placed(
-                vec![cuboid(Vec3::splat(0.6), faces)],
-                &[(0, above(1.0) * turn * Mat4::from_scale(scale))],
-            );
-            for light in kinds(scene.lights[0].light) {
-                let scene = with_light(scene.clone(), light);
-                let v = visibility(&gpu, &scene, &[]);
-                let shadow = dark(&gpu, &scene, &v);
-                let off = off(&v, &by(&gpu, &scene, "linear", &[("map_size", "2048")]));
-                println!(
-                    "{name} {} {} faces: {shadow} dark, {off} differ from a map",
-                    light.kind.id(),
-                    faces.len()
-                );
-                assert!(shadow >= least && off <= 20, "{name}: {shadow} {off}");
-                let vertex =
-                    visibility(&gpu, &scene, &[("silhouette", "vertex"), ("counting", "depth-fail")]);
-                assert_eq!(self::off(&v, &vertex), 0, "{name}");
-            }
-        }
-    }
-}
-
-/// On a face, in its plane, at a corner, inside: whatever the light's place, no two ways differ, and most of the floor is right.
-#[test]
-fn lights_on_and_in_meshes() {
-    let Some(gpu) = gpu() else { return };
-    let scene = placed(vec![cuboid(Vec3::new(0.5, 0.5, 0.5), &ALL)], &[(0, above(1.5))]);
-    for (name, place, least, most) in [
-        ("in the middle", Vec3::new(0.0, 1.5, 0.0), 2000, 20_000),
-        ("just inside", Vec3::new(0.0, 1.999, 0.0), 2000, 20_000),
-        ("on the top", Vec3::new(0.1, 2.0, 0.2), 500, 20_000),
-        ("just above the top", Vec3::new(0.1, 2.001, 0.2), 500, 20_000),
-        ("at a corner", Vec3::new(0.5, 2.0, 0.5), 500, 20_000),
-        ("on an edge", Vec3::new(0.5, 2.0, 0.1), 500, 20_000),
-        ("in the plane of the top", Vec3::new(2.0, 2.0, 0.3), 10, 20_000),
-        ("in two planes", Vec3::new(0.5, 2.0, 2.0), 10, 20_000),
-        ("on the floor", Vec3::new(1.5, 0.0, 0.0), 0, 20_000),
-    ] {
-        let light = Light { position_world: place, ..kinds(scene.lights[0].light)[1] };
-        let scene = with_light(scene.clone(), light);
-        let v = visibility(&gpu, &scene, &[]);
-        let shadow = dark(&gpu, &scene, &v);
-        println!("light {name}: {shadow} dark");
-        assert!((least..=most).contains(&shadow), "light {name}: {shadow}");
-        for pairs in [
-            &[("silhouette", "vertex")][..],
-            &[("counting", "depth-fail")],
-            &[("silhouette", "vertex"), ("counting", "depth-fail"), ("stencil", "two-pass")],
-        ] {
-            let off = off(&v, &visibility(&gpu, &scene, pairs));
-            println!("light {name}: {off} {pairs:?}");
-            assert_eq!(off, 0, "light {name}: {pairs:?}");
-        }
     }
 }
 

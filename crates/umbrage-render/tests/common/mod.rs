@@ -4,6 +4,7 @@
 pub mod compare;
 pub mod found;
 pub mod scenes;
+pub mod volumes;
 
 use std::sync::{Mutex, MutexGuard, OnceLock};
 use umbrage_render::umbrage::core::technique::Settings;

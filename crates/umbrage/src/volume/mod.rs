@@ -3,12 +3,15 @@
 //! For each light: [`record_silhouettes`] finds the faces of its casters' volumes (not needed with split edges),
 //! [`record_counts`] counts them, and [`record_visibility`] writes V, 1 where nothing was counted. The depth that is counted
 //! over must be that of the lit surfaces, transformed as `volume.wgsl` does, by the rows of `world_from_object` and then
-//! by `clip_from_world`: then lids and surfaces have equal depths, and equal counts as behind. Where a renderer's arithmetic is
-//! another, an inset puts the lids behind.
+//! by `clip_from_world`: then lids and surfaces have equal depths but for the last bits, which depend on the order of corners and
+//! on clipping. Faces are drawn a few steps of depth behind where they are, so that lids count as behind their surfaces. Where
+//! a renderer's arithmetic is another, an inset puts the lids farther behind.
 //!
 //! Counts wrap at 256, so that only their end counts, not the order of their faces; a pixel within exactly 256 volumes would be
 //! lit. Where a volume has no end ([`VolumeCaster::far_plane_world`]) the eye's far plane may not cut it: either the device has
-//! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane.
+//! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane (`far_m` infinite in
+//! [`umbrage_core::projection::perspective`]). A parallel eye needs an end ([`umbrage_core::volume::finite_length_m`]). Faces
+//! counted before the surface are always cut at the near plane, where their count begins.
 
 mod light;
 mod mesh;
