@@ -8,10 +8,12 @@ mod oracle;
 
 use browser::{Browser, Folder, TEMPORARY};
 use oracle::{Scene, Sight};
-use serde_json::{Value, json};
+use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use umbrage_render::umbrage::core::wgsl::MODULES;
+use umbrage_render::umbrage::core::technique::Combination;
+use umbrage_render::umbrage::core::wgsl::{MODULES, assemble};
 
 /// Where the page has the library's text, after the command that prints it.
 const FROM: &str = "<!-- The library: what `umbrage wgsl ";
@@ -191,8 +193,11 @@ fn messages(browser: &mut Browser, texts: &[(&str, String)]) -> Vec<(String, Str
                 const module = device.createShaderModule({{ code }});
                 for (const {{ type, lineNum, message }} of (await module.getCompilationInfo()).messages)
                     said.push([name, `${{type}}: ${{lineNum}}: ${{message}}`]);
-                const pipeline = {{ layout: 'auto', compute: {{ module, entryPoint: 'alone' }} }};
-                await device.createComputePipelineAsync(pipeline).catch((e) => said.push([name, e.message]));
+                const targets = [{{ format: 'rgba8unorm' }}], layout = 'auto';
+                const made = code.includes('@fragment')
+                    ? device.createRenderPipelineAsync({{ layout, vertex: {{ module }}, fragment: {{ module, targets }} }})
+                    : device.createComputePipelineAsync({{ layout, compute: {{ module }} }});
+                await made.catch((e) => said.push([name, e.message]));
                 const error = await device.popErrorScope();
                 if (error) said.push([name, error.message]);
             }}
@@ -215,6 +220,50 @@ fn every_module_compiles_alone_in_a_browser() {
     let broken = texts[0].1.clone() + "fn umbrage_broken() -> f32 { return 1u; }\n";
     let said = messages(&mut open.browser, &[("broken", broken)]);
     assert!(said.iter().any(|(_, message)| message.starts_with("error")), "{said:?}");
-    let adapter = open.browser.value("navigator.gpu.requestAdapter().then((a) => a.info.architecture)");
-    assert_ne!(adapter, Value::Null);
+}
+
+/// A pipeline's text that looks a map up as a combination does.
+fn lookup(combination: &Combination) -> String {
+    let hardware = combination.compares_in_hardware();
+    let (map, sampler) =
+        if hardware { ("texture_depth_2d_array", "sampler_comparison") } else { ("UmbrageMap", "sampler") };
+    let (more, maps, v) = if combination.colors_light() {
+        let more = "@group(0) @binding(3) var translucent: UmbrageMap;
+            @group(0) @binding(4) var colors: UmbrageColorMap;";
+        (more, "map, translucent, colors", "1.0")
+    } else {
+        ("", "map", "0.0, 0.0, 1.0")
+    };
+    let (library, filter) =
+        (assemble(&combination.modules()).expect("modules of a choice"), combination.filter_function());
+    format!(
+        "{library}
+        @group(0) @binding(0) var<uniform> view: UmbrageView;
+        @group(0) @binding(1) var map: {map};
+        @group(0) @binding(2) var point: {sampler};
+        {more}
+        @vertex fn corner() -> @builtin(position) vec4f {{ return vec4f(0.0); }}
+        @fragment fn pixel(@builtin(position) p: vec4f) -> @location(0) vec4f {{
+            let at = umbrage_locate(view, p.xyz, cross(dpdx(p.xyz), dpdy(p.xyz)));
+            if at.inside {{ return vec4f({filter}({maps}, point, view, at), {v}); }}
+            return vec4f(0.0);
+        }}"
+    )
+}
+
+#[test]
+fn every_way_of_looking_a_map_up_makes_a_pipeline_in_a_browser() {
+    let Some(mut open) = Open::new("lookups", "<!doctype html><title>lookups</title>") else { return };
+    let valid = Combination::all().filter(|combination| combination.objection().is_none());
+    let texts: BTreeMap<String, Combination> = valid.map(|c| (lookup(&c), c)).collect();
+    assert!(texts.len() > 50, "only {} lookups", texts.len());
+    let names: Vec<(String, &String)> =
+        texts.iter().map(|(text, c)| (c.rows().map(|row| row.id).join(" "), text)).collect();
+    let named: Vec<(&str, String)> =
+        names.iter().map(|(name, text)| (name.as_str(), (*text).clone())).collect();
+    assert_eq!(messages(&mut open.browser, &named), [], "lookup, message");
+
+    // What only a pipeline can tell is seen: a module may have two entry points that do not fit together.
+    let broken = named[0].1.replace("@builtin(position) p: vec4f)", "@location(7) p: vec4f)");
+    assert_ne!(messages(&mut open.browser, &[("broken", broken)]), []);
 }
