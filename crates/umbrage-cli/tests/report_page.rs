@@ -5,33 +5,12 @@
 
 mod browser;
 
-use browser::Browser;
+use browser::{Browser, Folder, TEMPORARY};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-/// Where a browser can read, too: one in a sandbox (snap) has a `/tmp` of its own.
-const TEMPORARY: &str = env!("CARGO_TARGET_TMPDIR");
-
-/// An empty folder that goes when the test ends.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(TEMPORARY).join(format!("page {name} {}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("a temporary folder");
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 fn umbrage(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_umbrage"));

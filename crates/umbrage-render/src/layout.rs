@@ -113,7 +113,6 @@ mod tests {
     use std::collections::BTreeMap;
     use std::mem::offset_of;
     use umbrage::core::layout::GpuView;
-    use umbrage::core::layout_mask::GpuMask;
 
     macro_rules! offsets {
         ($ty:ty, $($field:ident),*) => { (vec![$((stringify!($field), offset_of!($ty, $field))),*], size_of::<$ty>()) };
@@ -189,7 +188,6 @@ mod tests {
             ),
             ("MaskList", offsets!(GpuMaskList, masks, seen)),
             ("UmbrageView", (library("view"), size_of::<GpuView>())),
-            ("UmbrageMask", (library("mask"), size_of::<GpuMask>())),
         ]);
         let mut seen = std::collections::BTreeSet::new();
         for (name, text) in shaders::all() {

@@ -2,6 +2,11 @@
 //!
 //! Looked for in the path, or where `UMBRAGE_BROWSER` says. It reaches no network. Whatever goes wrong panics with a
 //! line that says what: this is part of tests.
+#![allow(dead_code)]
+
+mod folder;
+
+pub use folder::{Folder, TEMPORARY};
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -21,11 +26,10 @@ const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 /// For anything that the browser is to do, on a slow machine too.
 const WAIT: Duration = Duration::from_secs(30);
 
-/// The first four keep it quick and alone in a container; the others keep it off the network, and quiet.
-const FLAGS: [&str; 15] = [
+/// The first three keep it quick and alone in a container; the others keep it off the network, and quiet.
+const FLAGS: [&str; 14] = [
     "--headless",
     "--no-sandbox",
-    "--disable-gpu",
     "--disable-dev-shm-usage",
     "--disable-quic",
     "--host-resolver-rules=MAP * ~NOTFOUND",
@@ -38,6 +42,19 @@ const FLAGS: [&str; 15] = [
     "--disable-breakpad",
     "--remote-debugging-port=0",
     "about:blank",
+];
+
+/// For pages that draw nothing of their own.
+const WITHOUT_GPU: [&str; 1] = ["--disable-gpu"];
+
+/// WebGPU by the browser's own software rasteriser, the same on every machine. The last three are for the canvas: without them
+/// it has no texture that WebGPU can draw into.
+const WITH_WEBGPU: [&str; 5] = [
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader",
+    "--use-angle=swiftshader",
 ];
 
 /// Two browsers on two cores wait for one another.
@@ -54,15 +71,19 @@ pub fn find() -> Option<PathBuf> {
     let files = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
     let found = files.into_iter().find(|file| file.is_file());
     if found.is_none() {
-        let lacks = format!("no browser is installed: {names:?} are not in the path");
-        assert!(
-            std::env::var("UMBRAGE_BROWSER_REQUIRED").as_deref() != Ok("1"),
-            "UMBRAGE_BROWSER_REQUIRED=1, but {lacks}; install Chromium, or name one in UMBRAGE_BROWSER"
-        );
-        let test = std::thread::current().name().unwrap_or_default().to_owned();
-        let _ = writeln!(std::io::stderr(), "\nSKIPPED: {test}: {lacks}");
+        skip(&format!("no browser is installed: {names:?} are not in the path"));
     }
     found
+}
+
+/// Says that a test is left out, and fails where it must not be.
+fn skip(lacks: &str) {
+    assert!(
+        std::env::var("UMBRAGE_BROWSER_REQUIRED").as_deref() != Ok("1"),
+        "UMBRAGE_BROWSER_REQUIRED=1, but {lacks}; install Chromium, or name one in UMBRAGE_BROWSER"
+    );
+    let test = std::thread::current().name().unwrap_or_default().to_owned();
+    let _ = writeln!(std::io::stderr(), "\nSKIPPED: {test}: {lacks}");
 }
 
 /// The address of a file.
@@ -98,6 +119,22 @@ pub struct Browser {
 impl Browser {
     /// `profile` is a folder for it alone, made here.
     pub fn start(program: &Path, profile: &Path) -> Self {
+        Self::start_flagged(program, profile, &WITHOUT_GPU)
+    }
+
+    /// The same with WebGPU, and `page` open. None where the browser has no adapter for it, which is said.
+    pub fn start_with_webgpu(program: &Path, profile: &Path, page: &Path) -> Option<Self> {
+        let mut browser = Self::start_flagged(program, profile, &WITH_WEBGPU);
+        browser.open(page);
+        let adapter = browser.value("(async () => Boolean(await navigator.gpu?.requestAdapter()))()")
+            == Value::Bool(true);
+        if !adapter {
+            skip(&format!("{} has no WebGPU adapter", program.display()));
+        }
+        adapter.then_some(browser)
+    }
+
+    fn start_flagged(program: &Path, profile: &Path, more: &[&str]) -> Self {
         let alone = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
         std::fs::create_dir_all(profile).expect("a folder for the profile");
         let said = profile.join("said.txt");
@@ -105,6 +142,7 @@ impl Browser {
         data.push(profile);
         let mut process = Command::new(program)
             .arg(data)
+            .args(more)
             .args(FLAGS)
             // Or it keeps a folder for crashes in the user's home.
             .env("XDG_CONFIG_HOME", profile)
