@@ -128,8 +128,7 @@ impl Masks {
         caster_layout: &wgpu::BindGroupLayout,
         depth: wgpu::TextureFormat,
         lights: usize,
-        geometry: &Arc<Geometry>,
-        materials: &Arc<Vec<MaterialEntry>>,
+        (geometry, materials): (&Arc<Geometry>, &Arc<Vec<MaterialEntry>>),
     ) -> Result<Option<Self>, RenderError> {
         let Method::Mask(choices) = options.settings.method else { return Ok(None) };
         let device = &gpu.device;
@@ -461,6 +460,12 @@ impl Masks {
             works.push(work);
         }
         works
+    }
+
+    /// Memory of a light's masks and V, bytes.
+    pub fn memory_of_light(&self, light: usize) -> u64 {
+        let v = self.subtract.as_ref().map_or(0, |subtract| subtract.v.layer_bytes());
+        self.of_light(light).len() as u64 * u64::from(self.size_texel) * u64::from(self.size_texel) + v
     }
 
     /// Memory of masks, outlines and V, bytes.

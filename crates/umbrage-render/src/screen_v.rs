@@ -52,6 +52,11 @@ impl ScreenV {
         &self.array
     }
 
+    /// Memory of a layer, bytes.
+    pub fn layer_bytes(&self) -> u64 {
+        self.bytes / self.layers.len() as u64
+    }
+
     /// Memory, bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.bytes

@@ -1,12 +1,13 @@
 //! Shadow volumes of a scene's lights: which casters throw them, and what of them has to be found anew.
 
-use crate::RenderError;
 use crate::draw_list::Work;
 use crate::gpu::Gpu;
 use crate::moving::World;
 use crate::readback;
 use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::targets::Targets;
 use crate::timing::Queries;
+use crate::{RenderError, RenderOptions};
 use glam::{Mat4, UVec2};
 use umbrage::core::edges::Adjacency;
 use umbrage::core::technique::volume::{Soften, Volume};
@@ -64,6 +65,8 @@ struct Shape {
 #[derive(Debug)]
 pub(crate) struct Volumes {
     choices: Volume,
+    /// Names of meshes that no buffer holds.
+    too_large: Vec<String>,
     inset_m: f32,
     extrude_m: f32,
     pipelines: VolumePipelines,
@@ -91,16 +94,17 @@ fn shape(device: &wgpu::Device, pipelines: &VolumePipelines, mesh: &Mesh) -> Sha
 }
 
 impl Volumes {
-    /// Uploads the meshes; `None` for other families. `by_map` are those that maps draw.
+    /// Uploads the meshes; `None` for other families. `by_map` are those that maps draw; depth is of `format`.
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
-        settings: &Settings,
+        options: &RenderOptions,
         by_map: &[bool],
+        targets: &Targets,
         format: wgpu::TextureFormat,
-        size: UVec2,
         lights: usize,
     ) -> Option<Self> {
+        let (settings, size) = (&options.settings, options.size);
         let Method::Volume(choices) = settings.method else { return None };
         let device = &gpu.device;
         let pipelines = VolumePipelines::new(device, choices.silhouette, format, SCREEN_V);
@@ -108,8 +112,17 @@ impl Volumes {
             if *by_map { Shape { mesh: None, is_open: false } } else { shape(device, &pipelines, mesh) }
         };
         let shapes: Vec<Shape> = scene.meshes.iter().zip(by_map).map(of).collect();
-        Some(Self {
+        // What has triangles with area, and yet no volume, is more than the device's buffers hold.
+        let is_too_large = |(mesh, (shape, by_map)): &(&Mesh, (&Shape, &bool))| {
+            let limits = device.limits();
+            let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+            !**by_map && shape.mesh.is_none() && 16 * mesh.indices.len() as u64 > most
+        };
+        let judged = scene.meshes.iter().zip(shapes.iter().zip(by_map));
+        let too_large = judged.filter(is_too_large).map(|(mesh, _)| mesh.name.clone()).collect();
+        let mut made = Self {
             choices,
+            too_large,
             inset_m: settings.value("inset_m").unwrap_or(0.0),
             extrude_m: settings.value("extrude_m").unwrap_or(0.0),
             open: shapes.iter().map(|shape| shape.is_open).collect(),
@@ -124,11 +137,15 @@ impl Volumes {
             lights: (0..lights).map(|_| OfLight::default()).collect(),
             v: ScreenV::new(device, size, lights),
             soft: None,
-        })
+        };
+        if let Some(depth_only) = &targets.depth_only {
+            made.soften(device, settings, size, depth_only);
+        }
+        Some(made)
     }
 
     /// Makes what blurs V, where the technique asks for it, over the depth of the surfaces.
-    pub fn soften(
+    fn soften(
         &mut self,
         device: &wgpu::Device,
         settings: &Settings,
@@ -197,7 +214,12 @@ impl Volumes {
         size: UVec2,
         all_casters: bool,
     ) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let too_large = |name: &String| {
+            format!(
+                "mesh `{name}` throws no shadow: its edges do not fit into a buffer of this device; use the technique `linear`"
+            )
+        };
+        let mut warnings: Vec<String> = self.too_large.iter().map(too_large).collect();
         gpu.queue.write_buffer(&self.clip_from_world, 0, bytemuck::bytes_of(&clip_from_world));
         if let Some(soft) = &self.soft {
             let clip_from_view =
@@ -435,6 +457,13 @@ impl Volumes {
             Ok(sum)
         };
         self.lights.iter().map(of_light).collect()
+    }
+
+    /// Memory of a light's faces and V, bytes.
+    pub fn memory_of_light(&self, light: usize) -> u64 {
+        let faces =
+            self.lights.get(light).and_then(|of| of.volumes.as_ref()).map_or(0, VolumeLight::memory_bytes);
+        faces + self.v.layer_bytes()
     }
 
     /// Memory of meshes, faces and V, bytes.
