@@ -261,7 +261,12 @@ impl Masks {
                     }
                 });
                 match fitted {
-                    Ok(view) => {
+                    Ok(mut view) => {
+                        // The box that a mask begins behind is that of what stands still: grown by all that may move, it would take
+                        // in what stands around, and darken it.
+                        if self.deforms {
+                            view.bounds_world = self.outlines.rest_box_world(&parts);
+                        }
                         let content = self.content(&view, &parts, &light.light, time_s, &world.mesh_versions);
                         let at = placed.len() as u32;
                         placed.extend(content.parts.iter().map(|part| part.placed));

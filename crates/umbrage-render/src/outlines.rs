@@ -5,10 +5,10 @@ use crate::maps::Growing;
 use crate::maskable::has_holes;
 use glam::{DVec4, Vec3};
 use std::ops::Range;
-use umbrage::core::Light;
 use umbrage::core::fit::MaskView;
 use umbrage::core::technique::Settings;
 use umbrage::core::technique::mask::{FitTo, Mask, Outline};
+use umbrage::core::{Aabb, Light};
 use umbrage_scene::{Mesh, Scene, is_closed};
 
 /// One mesh's.
@@ -106,6 +106,13 @@ impl Outlines {
             points.extend(hull.iter().map(|p| part.world_from_object.transform_point3(*p)));
         }
         points
+    }
+
+    /// Box around an object as it is where nothing moves its vertices.
+    pub fn rest_box_world(&self, parts: &[MaskPart]) -> Aabb {
+        parts.iter().fold(Aabb::EMPTY, |all, part| {
+            all.union(&self.meshes[part.mesh].mesh.bounds.transformed(&part.world_from_object))
+        })
     }
 
     /// The indices that draw a part's outline into a mask: off by as many texels as may be, where it may be reduced.
