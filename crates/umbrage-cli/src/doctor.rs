@@ -5,8 +5,10 @@ use crate::fault::{Fault, say};
 use crate::json::{self, Machine, MapFormat};
 use crate::text;
 use serde::Serialize;
+use umbrage_render::umbrage::caster::unclipped;
 use umbrage_render::umbrage::core::technique::Storage;
 use umbrage_render::umbrage::format::{BY_PRECISION, choose_format, format_of, lacks};
+use umbrage_render::umbrage::volume::choose_count_format;
 use umbrage_render::{Gpu, gpu};
 
 #[derive(Serialize)]
@@ -23,6 +25,7 @@ struct Report {
     auto_format: Option<MapFormat>,
     auto_objection: Option<String>,
     samples: Vec<u32>,
+    volumes: Volumes,
     missing: Vec<String>,
 }
 
@@ -32,6 +35,13 @@ struct Adapter {
     machine: Machine,
     kind: String,
     chosen: bool,
+}
+
+/// What stencil volumes are counted with.
+#[derive(Serialize)]
+struct Volumes {
+    format: &'static str,
+    depth_clip_control: bool,
 }
 
 #[derive(Serialize)]
@@ -106,6 +116,13 @@ fn examine(gpu: &Gpu, asked: Option<&str>) -> Report {
             .into_iter()
             .filter(|count| matches!(count, 1 | 4))
             .collect(),
+        volumes: Volumes {
+            format: match choose_count_format(&gpu.device) {
+                wgpu::TextureFormat::Depth32FloatStencil8 => "depth32float-stencil8",
+                _ => "depth24plus-stencil8, because the adapter lacks DEPTH32FLOAT_STENCIL8",
+            },
+            depth_clip_control: unclipped(&gpu.device),
+        },
         missing: missing(gpu),
     }
 }
@@ -193,6 +210,12 @@ fn describe(report: &Report) -> String {
     );
     let samples: Vec<String> = report.samples.iter().map(u32::to_string).collect();
     out += &line("MSAA", &format!("{} samples a pixel", samples.join(" or ")));
+    let clipped = if report.volumes.depth_clip_control {
+        "a far plane cuts none (DEPTH_CLIP_CONTROL)"
+    } else {
+        "the picture has no far plane with them, because the adapter lacks DEPTH_CLIP_CONTROL"
+    };
+    out += &line("Volumes", &format!("counted over {}; {clipped}", report.volumes.format));
     out += "\nFormats of shadow maps, best first\n";
     for format in &report.formats {
         let verdict = format.lacks.map_or_else(|| "usable".to_owned(), |lacks| format!("lacks {lacks}"));
