@@ -95,7 +95,8 @@ impl Renderer<'_> {
         };
         self.tell(index, &set)?;
 
-        let names = self.pass_names(&drawn);
+        let stale = self.masks.as_ref().map(|masks| masks.stale(self.options.reuse)).unwrap_or_default();
+        let names = self.pass_names(&drawn, &stale);
         let queries = Queries::new(self.gpu, names.len() as u32, measure);
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
@@ -109,7 +110,6 @@ impl Renderer<'_> {
             work.extend(of_map);
         }
         //    And each mask that does not.
-        let stale = self.masks.as_ref().map(|masks| masks.stale(self.options.reuse)).unwrap_or_default();
         if let Some(masks) = &mut self.masks {
             let done = masks.record(&mut encoder, &stale, (&queries, pass));
             pass += done.len() as u32;
@@ -262,12 +262,12 @@ impl Renderer<'_> {
         !self.blended.is_empty() && matches!(self.options.view, View::Final | View::Light)
     }
 
-    fn pass_names(&self, drawn: &[usize]) -> Vec<String> {
+    fn pass_names(&self, drawn: &[usize], stale_masks: &[usize]) -> Vec<String> {
         let of_map = self.maker.pass_names();
         let of_view =
             |view: &usize| of_map.iter().map(move |name| format!("{name} {view}")).collect::<Vec<_>>();
         let mut names: Vec<String> = drawn.iter().flat_map(of_view).collect();
-        let of_masks = self.masks.as_ref().map(|masks| masks.pass_names(&masks.stale(self.options.reuse)));
+        let of_masks = self.masks.as_ref().map(|masks| masks.pass_names(stale_masks));
         let [masks, subtracted] = of_masks.unwrap_or_default();
         names.extend(masks);
         if self.targets.gbuffer.is_some() {

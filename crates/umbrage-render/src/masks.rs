@@ -10,7 +10,7 @@ use crate::maskable::{mask_options, most_of_light};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::outlines::Outlines;
-use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::screen_v::{SCREEN_V, screen_v};
 use crate::shadowed::{ReceiverBatch, Rect};
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
@@ -26,6 +26,7 @@ use umbrage::core::technique::Method;
 use umbrage::core::technique::mask::{Lookup, Mask, Receivers};
 use umbrage::core::volume::light_point_world;
 use umbrage::core::{Aabb, Light};
+use umbrage::layers::Layers;
 use umbrage::mask::{
     GpuReceiving, MaskMaps, MaskPipelines, Shadowed, SubtractPipelines, mask_sampler, record_mask_pass,
     record_subtract,
@@ -89,7 +90,7 @@ struct Subtract {
     instances: Growing,
     /// For each light: what is drawn for which mask.
     draws: Vec<Vec<(usize, ReceiverBatch)>>,
-    v: ScreenV,
+    v: Layers,
 }
 
 /// The masks of all lights.
@@ -174,7 +175,7 @@ impl Masks {
                 list,
                 instances: Growing::new(device, "receivers", wgpu::BufferUsages::VERTEX, 0),
                 draws: Vec::new(),
-                v: ScreenV::new(device, options.size, lights),
+                v: screen_v(device, options.size, lights),
             }
         });
         Ok(Some(Self {
@@ -206,7 +207,7 @@ impl Masks {
     }
 
     /// V that was found on the screen, where receivers are drawn once more.
-    pub fn v(&self) -> Option<&ScreenV> {
+    pub fn v(&self) -> Option<&Layers> {
         self.subtract.as_ref().map(|subtract| &subtract.v)
     }
 
@@ -434,7 +435,7 @@ impl Masks {
         for (light, draws) in subtract.draws.iter().enumerate() {
             let pass = first + light as u32;
             let mut work = Work::default();
-            let v = subtract.v.layer(light);
+            let Some(v) = subtract.v.layer(light as u32) else { continue };
             record_subtract(encoder, depth_stencil, v, queries.stamps(pass), |recorded| {
                 queries.count(recorded, pass, |recorded| {
                     recorded.set_index_buffer(self.geometry.indices.slice(..), wgpu::IndexFormat::Uint32);

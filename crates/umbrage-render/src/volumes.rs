@@ -4,7 +4,7 @@ use crate::draw_list::Work;
 use crate::gpu::Gpu;
 use crate::moving::World;
 use crate::readback;
-use crate::screen_v::{SCREEN_V, ScreenV};
+use crate::screen_v::{SCREEN_V, screen_v};
 use crate::targets::Targets;
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
@@ -14,6 +14,7 @@ use umbrage::core::technique::volume::{Soften, Volume};
 use umbrage::core::technique::{Method, Settings};
 use umbrage::core::volume as maths;
 use umbrage::core::{Camera, DEPTH, Frustum, Projection};
+use umbrage::layers::Layers;
 use umbrage::soften::{SoftenedV, Softener, Softness, record_soften, soften};
 use umbrage::volume::{
     Counted, Faces, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines, VolumeSource, Winding,
@@ -75,7 +76,7 @@ pub(crate) struct Volumes {
     open: Vec<bool>,
     clip_from_world: wgpu::Buffer,
     lights: Vec<OfLight>,
-    v: ScreenV,
+    v: Layers,
     soft: Option<Soft>,
 }
 
@@ -135,7 +136,7 @@ impl Volumes {
                 mapped_at_creation: false,
             }),
             lights: (0..lights).map(|_| OfLight::default()).collect(),
-            v: ScreenV::new(device, size, lights),
+            v: screen_v(device, size, lights),
             soft: None,
         };
         if let Some(depth_only) = &targets.depth_only {
@@ -160,13 +161,13 @@ impl Volumes {
             Softness { width_px: value("soft_px"), width_m: value("soft_m"), like: value("like_depth") };
         let softener = Softener::new(device, SCREEN_V, size.x, size.y);
         let of_light = (0..self.lights.len())
-            .map(|light| softener.of(device, self.v.layer(light), depth_only))
+            .filter_map(|light| Some(softener.of(device, self.v.layer(light as u32)?, depth_only)))
             .collect();
         self.soft = Some(Soft { softness, softener, of_light });
     }
 
     /// V of all lights.
-    pub fn v(&self) -> &ScreenV {
+    pub fn v(&self) -> &Layers {
         &self.v
     }
 
@@ -336,6 +337,7 @@ impl Volumes {
         let mut pass = first;
         let mut works = Vec::new();
         for index in 0..self.lights.len() {
+            let Some(v) = self.v.layer(index as u32) else { continue };
             let finds = self.finds(&self.lights[index], reuse);
             let stale = std::mem::replace(&mut self.lights[index].stale, false);
             let light = &self.lights[index];
@@ -365,20 +367,13 @@ impl Volumes {
                 works.push(self.work(light, drawn));
                 pass += 1;
             }
-            record_visibility(
-                encoder,
-                depth_stencil,
-                self.v.layer(index),
-                queries.stamps(pass),
-                |recorded| {
-                    queries.count(recorded, pass, |recorded| write_visibility(recorded, &self.pipelines));
-                },
-            );
+            record_visibility(encoder, depth_stencil, v, queries.stamps(pass), |recorded| {
+                queries.count(recorded, pass, |recorded| write_visibility(recorded, &self.pipelines));
+            });
             works.push(SCREEN);
             pass += 1;
             for columns in self.soft.iter().flat_map(|_| [false, true]) {
                 let Some(soft) = &self.soft else { continue };
-                let v = self.v.layer(index);
                 record_soften(encoder, &soft.softener, v, columns, queries.stamps(pass), |recorded| {
                     queries.count(recorded, pass, |recorded| {
                         soften(recorded, &soft.softener, &soft.of_light[index], columns);

@@ -3,6 +3,7 @@
 
 use crate::ShadowError;
 use crate::caster::{CasterStreams, GpuCasterView, caster_shader, unclipped};
+use crate::layers::Layers;
 use glam::{Mat4, Vec4};
 use std::num::NonZeroU64;
 use umbrage_core::layout_mask::GpuMask;
@@ -14,9 +15,7 @@ pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// Masks of equal size, a layer for each light and blocker.
 #[derive(Debug)]
 pub struct MaskMaps {
-    layers: Vec<wgpu::TextureView>,
-    array: wgpu::TextureView,
-    size_texel: u32,
+    layers: Layers,
 }
 
 impl MaskMaps {
@@ -31,39 +30,18 @@ impl MaskMaps {
         if size_texel == 0 || size_texel > limit || layers > layer_limit {
             return Err(ShadowError::TooLarge { size_texel, layers, limit, layer_limit });
         }
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("umbrage masks"),
-            size: wgpu::Extent3d { width: size_texel, height: size_texel, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: MASK_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let view = |base_array_layer, count, dimension| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer,
-                array_layer_count: Some(count),
-                ..Default::default()
-            })
-        };
-        Ok(Self {
-            layers: (0..layers).map(|layer| view(layer, 1, wgpu::TextureViewDimension::D2)).collect(),
-            array: view(0, layers, wgpu::TextureViewDimension::D2Array),
-            size_texel,
-        })
+        let size = [size_texel, size_texel];
+        Ok(Self { layers: Layers::new(device, "umbrage masks", size, layers, MASK_FORMAT) })
     }
 
     /// All masks, as shaders read them.
     pub fn array(&self) -> &wgpu::TextureView {
-        &self.array
+        self.layers.array()
     }
 
     /// Memory, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        self.layers.len() as u64 * u64::from(self.size_texel) * u64::from(self.size_texel)
+        self.layers.memory_bytes()
     }
 }
 
@@ -189,7 +167,7 @@ pub fn record_mask_pass(
     timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) {
-    let Some(view) = masks.layers.get(layer as usize) else { return };
+    let Some(view) = masks.layers.layer(layer) else { return };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("mask"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -2,6 +2,7 @@
 
 use crate::caster::{CasterStreams, caster_shader, channels, depth_bias, depth_compare, record_caster_pass};
 use crate::format::SCRATCH_DEPTH;
+use crate::layers::Layers;
 use crate::{ChosenFormat, ShadowError, ShadowMaps};
 use umbrage_core::plan::Pass;
 
@@ -12,9 +13,7 @@ pub const COLORS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// the nearest of these casters.
 #[derive(Debug)]
 pub struct TranslucentMaps {
-    colors: wgpu::Texture,
-    layers: Vec<wgpu::TextureView>,
-    array: wgpu::TextureView,
+    colors: Layers,
     nearest: ShadowMaps,
 }
 
@@ -31,35 +30,13 @@ impl TranslucentMaps {
         layers: u32,
     ) -> Result<Self, ShadowError> {
         let nearest = ShadowMaps::new(device, format, size_texel, layers)?;
-        let colors = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("umbrage colours of light"),
-            size: wgpu::Extent3d { width: size_texel, height: size_texel, depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: COLORS,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let view = |base_array_layer, count, dimension| {
-            colors.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer,
-                array_layer_count: Some(count),
-                ..Default::default()
-            })
-        };
-        Ok(Self {
-            layers: (0..layers).map(|layer| view(layer, 1, wgpu::TextureViewDimension::D2)).collect(),
-            array: view(0, layers, wgpu::TextureViewDimension::D2Array),
-            colors,
-            nearest,
-        })
+        let size = [size_texel, size_texel];
+        Ok(Self { colors: Layers::new(device, "umbrage colours of light", size, layers, COLORS), nearest })
     }
 
     /// The colours of all layers, to sample.
     pub fn colors(&self) -> &wgpu::TextureView {
-        &self.array
+        self.colors.array()
     }
 
     /// The maps of the nearest translucent casters.
@@ -69,8 +46,7 @@ impl TranslucentMaps {
 
     /// Memory of both, bytes; the maps beside them are not counted.
     pub fn memory_bytes(&self) -> u64 {
-        let texels = u64::from(self.colors.width()) * u64::from(self.colors.height());
-        texels * u64::from(self.colors.depth_or_array_layers()) * 4 + self.nearest.memory_bytes()
+        self.colors.memory_bytes() + self.nearest.memory_bytes()
     }
 }
 
@@ -198,7 +174,7 @@ pub fn record_color_pass<'a>(
     timestamps: Option<wgpu::RenderPassTimestampWrites<'a>>,
     draw: impl FnOnce(&mut wgpu::RenderPass<'_>),
 ) {
-    let (Some(view), Some(map)) = (translucent.layers.get(layer as usize), maps.layer(layer)) else { return };
+    let (Some(view), Some(map)) = (translucent.colors.layer(layer), maps.layer(layer)) else { return };
     let mut recorded = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(pass.name),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
