@@ -8,7 +8,7 @@ use crate::peeled::{Peeled, caster_passes};
 use crate::{RenderError, RenderOptions};
 use std::sync::Arc;
 use std::time::Duration;
-use umbrage::caster::NO_DEFORM;
+use umbrage::caster::{CasterVertices, NO_DEFORM};
 use umbrage::core::plan::{Draws, plan};
 use umbrage::core::technique::Settings;
 use umbrage::{CasterPipelines, ChosenFormat, TranslucentPipelines};
@@ -54,15 +54,15 @@ fn make_casting(
     caster_layout: &wgpu::BindGroupLayout,
 ) -> Result<Option<Casting>, RenderError> {
     let (Some(pass), peel_pass) = caster_passes(settings) else { return Ok(None) };
-    let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
-    let pipelines = CasterPipelines::new(&gpu.device, format, &pass, caster_layout, deform);
+    let vertices = CasterVertices::deformed(options.deform.as_deref().unwrap_or(NO_DEFORM));
+    let pipelines = CasterPipelines::new(&gpu.device, format, &pass, caster_layout, &vertices);
     let size_texel = settings.map_size_texel();
-    let peel = |pass| Peeled::new(&gpu.device, pass, size_texel, caster_layout, deform);
+    let peel = |pass| Peeled::new(&gpu.device, pass, size_texel, caster_layout, &vertices);
     let mut tinting = plan(settings).into_iter().filter(|pass| pass.draws == Draws::Translucent);
     let translucent = match (tinting.next(), tinting.next()) {
         (Some(colors), Some(nearest)) => {
             let groups = [&pipelines.view_layout, caster_layout];
-            let made = TranslucentPipelines::new(&gpu.device, format, &colors, groups, deform);
+            let made = TranslucentPipelines::new(&gpu.device, format, &colors, groups, &vertices);
             Some(([colors, nearest], made))
         }
         _ => None,

@@ -19,7 +19,7 @@ use std::mem::offset_of;
 use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
-use umbrage::caster::{GpuCasterView, NO_DEFORM};
+use umbrage::caster::{CasterVertices, GpuCasterView, NO_DEFORM};
 use umbrage::core::fit::{MaskError, MaskView, fit_mask};
 use umbrage::core::layout_mask::GpuMask;
 use umbrage::core::technique::Method;
@@ -138,8 +138,8 @@ impl Masks {
         let most = (lights * most_of_light(lights, size_texel)).min(lights * scene.objects() as usize).max(1);
         let maps = MaskMaps::new(device, size_texel, most as u32)?;
         let sampler = mask_sampler(device, choices.lookup == Lookup::Linear);
-        let deform = options.deform.as_deref().unwrap_or(NO_DEFORM);
-        let pipelines = MaskPipelines::new(device, caster_layout, deform);
+        let vertices = CasterVertices::deformed(options.deform.as_deref().unwrap_or(NO_DEFORM));
+        let pipelines = MaskPipelines::new(device, caster_layout, &vertices);
         let uniform = |label, size: u64| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -162,7 +162,7 @@ impl Masks {
             }],
         });
         let subtract = (choices.receivers == Receivers::Subtractive).then(|| {
-            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V, deform);
+            let pipelines = SubtractPipelines::new(device, depth, SCREEN_V, &vertices);
             let list = uniform("masks apart", most as u64 * u64::from(SubtractPipelines::STRIDE));
             let receiving: Vec<_> =
                 (0..lights.max(1)).map(|_| uniform("receiving", size_of::<GpuReceiving>() as u64)).collect();

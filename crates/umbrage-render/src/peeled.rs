@@ -3,7 +3,7 @@
 use umbrage::core::plan::{Draws, Pass, Target, plan};
 use umbrage::core::technique::Settings;
 use umbrage::format::{PEEL_DEPTH, PEEL_STORAGE};
-use umbrage::{CasterPipelines, ChosenFormat, Peel, ShadowError};
+use umbrage::{CasterPipelines, CasterVertices, ChosenFormat, Peel, ShadowError};
 
 /// The nearest layer, and what draws it.
 #[derive(Debug)]
@@ -27,13 +27,13 @@ impl Peeled {
         pass: Pass,
         size_texel: u32,
         cut_out_layout: &wgpu::BindGroupLayout,
-        deform: &str,
+        vertices: &CasterVertices<'_>,
     ) -> Result<Self, ShadowError> {
         let format =
             ChosenFormat { storage: PEEL_STORAGE, format: PEEL_DEPTH, why: "depth peeling".to_owned() };
         Ok(Self {
             peel: Peel::new(device, size_texel, 1)?,
-            pipelines: CasterPipelines::new(device, &format, &pass, cut_out_layout, deform),
+            pipelines: CasterPipelines::new(device, &format, &pass, cut_out_layout, vertices),
             pass,
         })
     }

@@ -6,7 +6,7 @@ use common::gpu;
 use common::scenes::builtin;
 use glam::{DVec3, Mat4, Vec3, Vec4};
 use umbrage_render::Gpu;
-use umbrage_render::umbrage::caster::{GpuCasterView, NO_DEFORM};
+use umbrage_render::umbrage::caster::{CasterVertices, GpuCasterView, NO_DEFORM};
 use umbrage_render::umbrage::core::DEPTH;
 use umbrage_render::umbrage::core::projection::perspective;
 use umbrage_render::umbrage::{CasterPipelines, Peel, PeelPipelines, ShadowError, record_peel};
@@ -91,7 +91,7 @@ fn peeled(
     (deform, time_s): (&str, f32),
 ) -> Vec<Vec<f32>> {
     let cut_out_layout = CasterPipelines::cut_out_layout(&gpu.device);
-    let pipelines = PeelPipelines::new(&gpu.device, &cut_out_layout, deform);
+    let pipelines = PeelPipelines::new(&gpu.device, &cut_out_layout, &CasterVertices::deformed(deform));
     let peel = Peel::new(&gpu.device, SIDE, layers).expect("layers");
     let view = GpuCasterView {
         clip_from_world,

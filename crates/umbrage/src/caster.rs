@@ -11,16 +11,11 @@ use umbrage_core::technique::Storage;
 
 /// The vertex buffers that caster pipelines read.
 ///
-/// Slot 0: positions, `Float32x3`, 12 bytes. Slot 1, per instance: the three rows of `world_from_object`,
+/// Slot 0: positions, as [`CasterVertices`] says. Slot 1, per instance: the three rows of `world_from_object`,
 /// `3 x Float32x4`, 48 bytes. Slot 2, only for cut-out casters: texture coordinates and alpha factor, `Float32x3`.
 #[derive(Clone, Copy, Debug)]
 pub struct CasterStreams;
 
-const POSITIONS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
-    array_stride: 12,
-    step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-};
 const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 48,
     step_mode: wgpu::VertexStepMode::Instance,
@@ -33,12 +28,59 @@ const UV_ALPHA: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
 };
 
 impl CasterStreams {
-    /// Slot 0.
-    pub const POSITIONS: wgpu::VertexBufferLayout<'static> = POSITIONS;
+    /// Slot 0 of positions that have a buffer of their own: the default of [`CasterVertices`].
+    pub const POSITIONS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+        array_stride: 12,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+    };
     /// Slot 1.
     pub const INSTANCES: wgpu::VertexBufferLayout<'static> = INSTANCES;
     /// Slot 2 of cut-out casters.
     pub const UV_ALPHA: wgpu::VertexBufferLayout<'static> = UV_ALPHA;
+}
+
+/// How the vertices of casters come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CasterVertices<'a> {
+    /// Bytes from one position to the next in slot 0: 12 where positions have a buffer of their own, more where they stand among
+    /// other attributes. A multiple of 4.
+    pub stride: u64,
+    /// Of a position: any that a shader reads as three floats or more. Default: `Float32x3`.
+    pub format: wgpu::VertexFormat,
+    /// Moves vertices: [`NO_DEFORM`] or a user's own (see [`caster_shader`]).
+    pub deform: &'a str,
+}
+
+impl Default for CasterVertices<'_> {
+    /// Positions alone, which nobody deforms.
+    fn default() -> Self {
+        Self { stride: 12, format: wgpu::VertexFormat::Float32x3, deform: NO_DEFORM }
+    }
+}
+
+impl<'a> CasterVertices<'a> {
+    /// The default, with a user's own deformation.
+    pub fn deformed(deform: &'a str) -> Self {
+        Self { deform, ..Self::default() }
+    }
+
+    /// The attribute of slot 0.
+    pub(crate) fn attribute(&self) -> [wgpu::VertexAttribute; 1] {
+        [wgpu::VertexAttribute { format: self.format, offset: 0, shader_location: 0 }]
+    }
+
+    /// Slot 0.
+    pub(crate) fn positions<'b>(
+        &self,
+        attribute: &'b [wgpu::VertexAttribute; 1],
+    ) -> wgpu::VertexBufferLayout<'b> {
+        wgpu::VertexBufferLayout {
+            array_stride: self.stride,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: attribute,
+        }
+    }
 }
 
 /// The comparison that keeps what is nearest, for depth tests and comparison samplers alike.
@@ -95,7 +137,7 @@ impl GpuCasterView {
     }
 }
 
-/// Casters that nobody deforms: the default of [`CasterPipelines::new`]'s `deform`.
+/// Casters that nobody deforms.
 pub const NO_DEFORM: &str = include_str!("../wgsl/deform.wgsl");
 
 /// The text of the caster shader, with a user's `fn umbrage_deform(p_world: vec3f, p_object: vec3f, time_s: f32) -> vec3f`.
@@ -190,15 +232,16 @@ impl CasterPipelines {
     }
 
     /// Makes the pipelines of a planned pass for maps of `format`. Those of passes that keep what lies behind a layer take it in
-    /// group 1: [`crate::Peel::behind`]. `cut_out_layout` is [`Self::cut_out_layout`], `deform` is
-    /// [`NO_DEFORM`] or a user's own.
+    /// group 1: [`crate::Peel::behind`]. `cut_out_layout` is [`Self::cut_out_layout`].
     pub fn new(
         device: &wgpu::Device,
         format: &ChosenFormat,
         pass: &Pass,
         cut_out_layout: &wgpu::BindGroupLayout,
-        deform: &str,
+        vertices: &CasterVertices<'_>,
     ) -> Self {
+        let deform = vertices.deform;
+        let attribute = vertices.attribute();
         let is_behind = pass.keeps != Keeps::Nearest;
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage caster"),
@@ -218,7 +261,7 @@ impl CasterPipelines {
                 bind_group_layouts: groups,
                 immediate_size: 0,
             });
-            let buffers = [Some(POSITIONS), Some(INSTANCES), Some(UV_ALPHA)];
+            let buffers = [Some(vertices.positions(&attribute)), Some(INSTANCES), Some(UV_ALPHA)];
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(label),
                 layout: Some(&layout),

@@ -13,7 +13,7 @@ pub mod soften;
 pub mod translucent;
 pub mod volume;
 
-pub use caster::{CasterPipelines, CasterStreams, record_caster_pass};
+pub use caster::{CasterPipelines, CasterStreams, CasterVertices, record_caster_pass};
 pub use format::{ChosenFormat, choose_format};
 pub use maps::ShadowMaps;
 pub use peel::{Peel, PeelPipelines, record_peel};

@@ -45,7 +45,9 @@ impl ShadowMaps {
             })
         };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let read = wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST;
         let texture = make("umbrage shadow maps", layers, format.format, drawn | read);
         let scratch = is_color
             .then(|| make("umbrage scratch depth", 1, SCRATCH_DEPTH, drawn).create_view(&Default::default()));

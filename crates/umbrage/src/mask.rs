@@ -2,7 +2,7 @@
 //! Where to look is [`umbrage_core::fit::fit_mask`]; how to look it up inline is the WGSL module `mask`.
 
 use crate::ShadowError;
-use crate::caster::{CasterStreams, GpuCasterView, caster_shader, unclipped};
+use crate::caster::{CasterStreams, CasterVertices, GpuCasterView, caster_shader, unclipped};
 use crate::layers::Layers;
 use glam::{Mat4, Vec4};
 use std::num::NonZeroU64;
@@ -109,10 +109,14 @@ impl GpuCasterView {
 }
 
 impl MaskPipelines {
-    /// Makes them. `cut_out_layout` is [`crate::CasterPipelines::cut_out_layout`], `deform` is [`crate::caster::NO_DEFORM`] or a
-    /// user's own.
-    pub fn new(device: &wgpu::Device, cut_out_layout: &wgpu::BindGroupLayout, deform: &str) -> Self {
-        let shader = module(device, "umbrage mask", mask_shader(deform));
+    /// Makes them. `cut_out_layout` is [`crate::CasterPipelines::cut_out_layout`].
+    pub fn new(
+        device: &wgpu::Device,
+        cut_out_layout: &wgpu::BindGroupLayout,
+        vertices: &CasterVertices<'_>,
+    ) -> Self {
+        let shader = module(device, "umbrage mask", mask_shader(vertices.deform));
+        let attribute = vertices.attribute();
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage mask view"),
@@ -125,7 +129,7 @@ impl MaskPipelines {
                 immediate_size: 0,
             });
             let buffers = [
-                Some(CasterStreams::POSITIONS),
+                Some(vertices.positions(&attribute)),
                 Some(CasterStreams::INSTANCES),
                 Some(CasterStreams::UV_ALPHA),
             ];
@@ -224,15 +228,15 @@ impl SubtractPipelines {
     /// Bytes from one mask to the next in the buffer of [`Self::group`]: every device allows dynamic offsets of this many.
     pub const STRIDE: u32 = 256;
 
-    /// For V of `v_format` and a depth with a stencil of `format`. `deform` moves vertices as it did where the surfaces were drawn:
-    /// see [`crate::caster::NO_DEFORM`].
+    /// For V of `v_format` and a depth with a stencil of `format`. Vertices are deformed as they were where the surfaces were drawn.
     pub fn new(
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
         v_format: wgpu::TextureFormat,
-        deform: &str,
+        vertices: &CasterVertices<'_>,
     ) -> Self {
-        let shader = module(device, "umbrage receivers", receiver_shader(deform));
+        let shader = module(device, "umbrage receivers", receiver_shader(vertices.deform));
+        let attribute = vertices.attribute();
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("umbrage receivers"),
@@ -289,7 +293,7 @@ impl SubtractPipelines {
                     module: &shader,
                     entry_point: Some("vs_receiver"),
                     compilation_options: Default::default(),
-                    buffers: &[Some(CasterStreams::POSITIONS), Some(CasterStreams::INSTANCES)],
+                    buffers: &[Some(vertices.positions(&attribute)), Some(CasterStreams::INSTANCES)],
                 },
                 primitive: Default::default(),
                 depth_stencil: Some(wgpu::DepthStencilState {

@@ -4,7 +4,7 @@
 //! "Interactive Order-Independent Transparency"). Beyond the last surface a layer holds the far plane. Each layer costs one
 //! drawing of all casters and 4 bytes a texel.
 
-use crate::caster::CasterPipelines;
+use crate::caster::{CasterPipelines, CasterVertices};
 use crate::format::{PEEL_DEPTH, PEEL_STORAGE};
 use crate::{ChosenFormat, ShadowError};
 use umbrage_core::plan::{Pass, peel_pass};
@@ -122,11 +122,16 @@ pub struct PeelPipelines {
 
 impl PeelPipelines {
     /// Makes the pipelines; they draw all faces. The arguments are those of [`CasterPipelines::new`].
-    pub fn new(device: &wgpu::Device, cut_out_layout: &wgpu::BindGroupLayout, deform: &str) -> Self {
+    pub fn new(
+        device: &wgpu::Device,
+        cut_out_layout: &wgpu::BindGroupLayout,
+        vertices: &CasterVertices<'_>,
+    ) -> Self {
         let format =
             ChosenFormat { storage: PEEL_STORAGE, format: PEEL_DEPTH, why: "depth peeling".to_owned() };
         // Neither target's size is part of a pipeline.
-        let of = |layer| CasterPipelines::new(device, &format, &peel_pass(1, layer), cut_out_layout, deform);
+        let of =
+            |layer| CasterPipelines::new(device, &format, &peel_pass(1, layer), cut_out_layout, vertices);
         Self { nearest: of(0), behind: of(1) }
     }
 

@@ -1,6 +1,8 @@
 //! Maps of the light that translucent casters colour, and the two passes that draw them.
 
-use crate::caster::{CasterStreams, caster_shader, channels, depth_bias, depth_compare, record_caster_pass};
+use crate::caster::{
+    CasterStreams, CasterVertices, caster_shader, channels, depth_bias, depth_compare, record_caster_pass,
+};
 use crate::format::SCRATCH_DEPTH;
 use crate::layers::Layers;
 use crate::{ChosenFormat, ShadowError, ShadowMaps};
@@ -95,11 +97,12 @@ impl TranslucentPipelines {
         format: &ChosenFormat,
         pass: &Pass,
         groups: [&wgpu::BindGroupLayout; 2],
-        deform: &str,
+        vertices: &CasterVertices<'_>,
     ) -> Self {
+        let attribute = vertices.attribute();
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("umbrage translucent caster"),
-            source: wgpu::ShaderSource::Wgsl(translucent_shader(deform).into()),
+            source: wgpu::ShaderSource::Wgsl(translucent_shader(vertices.deform).into()),
         });
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("umbrage translucent caster"),
@@ -117,7 +120,7 @@ impl TranslucentPipelines {
                     entry_point: Some("vs_pane"),
                     compilation_options: Default::default(),
                     buffers: &[
-                        Some(CasterStreams::POSITIONS),
+                        Some(vertices.positions(&attribute)),
                         Some(CasterStreams::INSTANCES),
                         Some(UV_COLOR),
                     ],
