@@ -5,6 +5,7 @@
 
 pub mod caster;
 pub mod format;
+pub mod growing;
 pub mod layers;
 pub mod maps;
 pub mod mask;
