@@ -334,7 +334,7 @@ impl CasterPipelines {
 }
 
 /// Group 0: one [`GpuCasterView`].
-fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("umbrage caster view"),
         entries: &[wgpu::BindGroupLayoutEntry {

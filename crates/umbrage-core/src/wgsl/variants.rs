@@ -29,7 +29,7 @@ fn is_varied(module: &Module) -> bool {
         SLOTS.iter().any(|(slot, _)| slot == need)
             || MODULES.iter().find(|other| other.name == *need).is_some_and(is_varied)
     };
-    module.slot().is_some() || module.needs.iter().any(|need| needs_varied(&need))
+    module.slot().is_some() || module.needs.iter().any(needs_varied)
 }
 
 /// Words of a text, each with where it begins: identifiers, keywords, numbers.
