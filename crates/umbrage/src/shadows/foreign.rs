@@ -12,22 +12,38 @@ fn is_refused(device: &wgpu::Device, use_it: impl FnOnce()) -> bool {
     matches!(popped.poll(&mut Context::from_waker(Waker::noop())), Poll::Ready(Some(_)))
 }
 
-/// Is a vertex or index buffer of another device?
+/// Is a vertex or index buffer of another device? Of devices of one `wgpu::Instance`: what belongs to another instance cannot be told
+/// from one's own.
 pub(super) fn is_foreign_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer, is_index: bool) -> bool {
     is_refused(device, || {
-        let mut bundle = device.create_render_bundle_encoder(&wgpu::RenderBundleEncoderDescriptor {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("umbrage whose buffer"),
-            color_formats: &[Some(wgpu::TextureFormat::Rgba8Unorm)],
-            depth_stencil: None,
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
             sample_count: 1,
-            multiview: None,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R8Unorm,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("umbrage whose buffer"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &texture.create_view(&Default::default()),
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..Default::default()
         });
         if is_index {
-            bundle.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint16);
+            pass.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint16);
         } else {
-            bundle.set_vertex_buffer(0, buffer.slice(..));
+            pass.set_vertex_buffer(0, buffer.slice(..));
         }
-        bundle.finish(&wgpu::RenderBundleDescriptor { label: Some("umbrage whose buffer") });
+        drop(pass);
+        encoder.finish();
     })
 }
 

@@ -15,6 +15,11 @@ pub struct Gpu {
 /// The software rasteriser, with default limits and no optional feature; a validation error panics. `None`, said loudly, where it is
 /// missing; a failure where `UMBRAGE_GOLDEN_REQUIRED=1` says that it must not be.
 pub fn gpu() -> Option<Gpu> {
+    gpus().map(|[gpu, _]| gpu)
+}
+
+/// Two devices of one instance.
+pub fn gpus() -> Option<[Gpu; 2]> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::PRIMARY,
         flags: wgpu::InstanceFlags::empty(),
@@ -28,9 +33,12 @@ pub fn gpu() -> Option<Gpu> {
         eprintln!("SKIPPED: there is no adapter llvmpipe");
         return None;
     };
-    let made = pollster::block_on(adapter.request_device(&Default::default()));
-    let (device, queue) = made.expect("a device with default limits");
-    Some(Gpu { device, queue })
+    let make = || {
+        let made = pollster::block_on(adapter.request_device(&Default::default()));
+        let (device, queue) = made.expect("a device with default limits");
+        Gpu { device, queue }
+    };
+    Some([make(), make()])
 }
 
 /// A cube from -1 to 1, wound to the outside.
