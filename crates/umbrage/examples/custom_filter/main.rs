@@ -57,18 +57,19 @@ fn things() -> Vec<Placed> {
 
 impl Half {
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, side: f32, own: bool, things: &[Placed]) -> Result<Self> {
-        // The technique `kernel` compares with each texel that its kernel reaches, and blends by the kernel's weights.
-        let technique = Settings::new("kernel", [("width", "17"), ("map_size", "512")])?;
+        // The technique `kernel` compares with each texel that its kernel reaches, and blends by the kernel's weights. The default
+        // bias makes filters narrow where shadows begin; here all of the kernel is to be seen.
+        let choices = [("width", "17"), ("map_size", "512"), ("bias", "receiver-plane")];
+        let technique = Settings::new("kernel", choices)?;
         let mut options = ShadowsOptions::with([])?.technique(technique);
         if own {
             options = options.kernel(include_str!("ring.wgsl"));
         }
         let mut shadows = Shadows::new(&gpu.device, &gpu.queue, options)?;
-        let light =
-            Light::spot(Vec3::new(side, 4.6, -4.2), Vec3::new(side, 0.0, 0.0), 0.4, 0.62);
+        let light = Light::spot(Vec3::new(side, 4.6, -4.2), Vec3::new(side, 0.0, 0.0), 0.4, 0.62);
         let light = Light { intensity: 34.0, ..light };
-        let light_number = shadows.add_light(light)?;
-        let light_number = shadows.light_index(light_number)?;
+        let handle = shadows.add_light(light)?;
+        let number = shadows.light_index(handle)?;
         shadows.add_receiver(Aabb { min: Vec3::new(-5.0, 0.0, -4.0), max: Vec3::new(5.0, 0.0, 4.0) })?;
         let mesh = Mesh::new(gpu, &mut shadows, &Shape::cube())?;
         for thing in &things[1..] {
@@ -76,7 +77,7 @@ impl Half {
         }
         let forward = Forward::new(gpu, format, &shadows, things.len());
         forward.place(gpu, things);
-        Ok(Self { shadows, mesh, forward, lights: [(light_number, light)] })
+        Ok(Self { shadows, mesh, forward, lights: [(number, light)] })
     }
 }
 
@@ -85,10 +86,8 @@ impl Example for CustomFilter {
 
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, plain: bool) -> Result<Self> {
         let things = things();
-        let halves = [
-            Half::new(gpu, format, -1.6, false, &things)?,
-            Half::new(gpu, format, 1.6, !plain, &things)?,
-        ];
+        let halves =
+            [Half::new(gpu, format, -1.6, false, &things)?, Half::new(gpu, format, 1.6, !plain, &things)?];
         Ok(Self { halves, things })
     }
 

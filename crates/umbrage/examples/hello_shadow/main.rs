@@ -18,7 +18,7 @@ fn main() -> std::process::ExitCode {
 }
 
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-const TO_SUN: Vec3 = Vec3::new(0.75, 1.0, 0.1);
+const TO_SUN: Vec3 = Vec3::new(0.9, 1.0, -0.45);
 
 /// A mesh on the GPU.
 struct Mesh {
@@ -100,7 +100,8 @@ impl Example for Hello {
             let mesh = shadows.add_mesh(&mesh)?; // shadow
             let (_ground, standing) = things.split_last().ok_or("there is nothing to draw")?; // shadow
             let of_mesh = standing.iter().filter(|(of, _)| *of == number && !plain); // shadow
-            for (_, placed) in of_mesh { // shadow
+            for (_, placed) in of_mesh {
+                // shadow
                 casters.push(shadows.add_caster(mesh, placed.world_from_object)?); // shadow
             } // shadow
             meshes.push(Mesh { vertices, indices, count });
@@ -145,7 +146,8 @@ impl Example for Hello {
         let (_, knot) = &mut self.things[0];
         knot.world_from_object = knot_at(time_s);
         gpu.queue.write_buffer(&self.placed, 0, bytemuck::bytes_of(knot));
-        if let Some(caster) = self.casters.first() { // shadow
+        if let Some(caster) = self.casters.first() {
+            // shadow
             self.shadows.move_caster(*caster, knot.world_from_object)?; // shadow
         } // shadow
         let around = 0.7 + 0.1 * time_s;

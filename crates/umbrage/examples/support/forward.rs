@@ -151,7 +151,7 @@ impl Forward {
         };
         let text = shadows.wgsl(1) + include_str!("forward.wgsl");
         let layouts = [globals, shadows.bind_group_layout()];
-        lit_pipeline(gpu, format, text, &layouts, &[Some(corner), Some(placed)])
+        lit_pipeline(gpu, format, (text, "vs"), &layouts, &[Some(corner), Some(placed)])
     }
 
     /// Says what the next pass shows: the camera and the lights, each with its number in the shader.
@@ -220,11 +220,11 @@ impl Forward {
     }
 }
 
-/// A pipeline of the forward pass, with the entry points `vs` and `fs`.
+/// A pipeline of the forward pass: text with the entry point of its vertices; that of pixels is `fs`.
 pub fn lit_pipeline(
     gpu: &Gpu,
     format: wgpu::TextureFormat,
-    wgsl: String,
+    (wgsl, vertex_entry): (String, &str),
     groups: &[&wgpu::BindGroupLayout],
     buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
 ) -> wgpu::RenderPipeline {
@@ -243,7 +243,7 @@ pub fn lit_pipeline(
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("vs"),
+            entry_point: Some(vertex_entry),
             compilation_options: Default::default(),
             buffers,
         },

@@ -37,8 +37,9 @@ impl Gpu {
         surface: Option<&wgpu::Surface<'_>>,
     ) -> Result<(Self, wgpu::Adapter)> {
         let wanted = wgpu::RequestAdapterOptions { compatible_surface: surface, ..Default::default() };
-        let adapter = pollster::block_on(instance.request_adapter(&wanted))
-            .map_err(|e| format!("no graphics adapter: {e}; install a driver (Debian: mesa-vulkan-drivers)"))?;
+        let adapter = pollster::block_on(instance.request_adapter(&wanted)).map_err(|e| {
+            format!("no graphics adapter: {e}; install a driver (Debian: mesa-vulkan-drivers)")
+        })?;
         Ok((Self::of(&adapter)?, adapter))
     }
 

@@ -33,13 +33,18 @@ pub trait Example: Sized {
     /// What `--time` is when it is not given, seconds.
     const TIME_S: f32 = 0.0;
 
+    /// What is drawn for a picture of `time_s`, one after the other.
+    fn times_s(time_s: f32) -> Vec<f32> {
+        vec![time_s]
+    }
+
     /// Pictures will have `format`. `plain`: without what the example is about, to see the difference.
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, plain: bool) -> Result<Self>;
 
     /// Draws a moment and submits it.
     fn draw(&mut self, gpu: &Gpu, target: &Target<'_>, time_s: f32) -> Result<()>;
 
-    /// What a picture's maker may want to know of the last frame.
+    /// What a picture's maker may want to know of the frames.
     fn report(&self) -> String {
         String::new()
     }
@@ -108,7 +113,7 @@ fn headless<E: Example>(path: &str, arguments: &Arguments) -> Result<()> {
     let gpu = Gpu::open(None)?;
     let size_px = arguments.size_px;
     let time_s = arguments.time_s.unwrap_or(E::TIME_S);
-    let (rgba, report) = picture::<E>(&gpu, size_px, arguments.plain, &[time_s])?;
+    let (rgba, report) = picture::<E>(&gpu, size_px, arguments.plain, &E::times_s(time_s))?;
     image::save_buffer(path, &rgba, size_px[0], size_px[1], image::ColorType::Rgba8)
         .map_err(|e| format!("{path} cannot be written: {e}"))?;
     println!("{path} is drawn by {}", gpu.adapter_name);
