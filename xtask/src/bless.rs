@@ -4,7 +4,7 @@ use crate::process::{self, Done, Fault, failed};
 use crate::setup::{self, Need};
 
 /// The test targets that hold golden images, by name.
-const GOLDEN_TARGETS: &str = "*golden*";
+const GOLDEN_TARGETS: [&str; 2] = ["*golden*", "examples"];
 
 /// `cargo xtask bless [FILTER]`
 pub fn run(arguments: &[String]) -> Done {
@@ -14,7 +14,8 @@ pub fn run(arguments: &[String]) -> Done {
         _ => return Err(Fault::WrongUse("`bless` takes one filter, a part of the tests' names".into())),
     };
     setup::before_build(Need::Goldens)?;
-    let tests = ["test", "--workspace", "--test", GOLDEN_TARGETS, "--no-fail-fast"];
+    let [golden, examples] = GOLDEN_TARGETS;
+    let tests = ["test", "--workspace", "--test", golden, "--test", examples, "--no-fail-fast"];
     // Apart, because a failure to build must not look like what comes next.
     process::run(process::cargo(tests).arg("--no-run"))?;
     eprintln!(

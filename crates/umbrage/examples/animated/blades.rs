@@ -72,7 +72,8 @@ impl Blades {
             include_str!("lit.wgsl"),
         ];
         let groups = [&forward.globals_layout, shadows.bind_group_layout()];
-        let lit = lit_pipeline(gpu, format, (text.join("\n"), "vs_blade"), &groups, &[Some(LAYOUT)]);
+        let lit = (text.join("\n"), ["vs_blade", "fs_blade"]);
+        let lit = lit_pipeline(gpu, format, lit, &groups, &[Some(LAYOUT)]);
         let now: Vec<Blade> = (0..COUNT).map(|number| blade(number, 0.0)).collect();
         Ok(Self {
             blades: gpu.buffer(&now, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),

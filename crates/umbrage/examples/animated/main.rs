@@ -4,7 +4,7 @@
 //! `cargo run -p umbrage --example animated`, or `-- --headless OUT.png --time S`; `--plain`: without casters.
 
 #[path = "../support/mod.rs"]
-mod support;
+pub(crate) mod support;
 
 mod blades;
 

@@ -4,7 +4,7 @@
 //! `cargo run -p umbrage --example custom_filter`, or `-- --headless OUT.png`; `--plain`: the bell on both sides.
 
 #[path = "../support/mod.rs"]
-mod support;
+pub(crate) mod support;
 
 use glam::camera::rh::{proj::directx::perspective, view::look_at_mat4};
 use glam::{Mat4, Vec3};

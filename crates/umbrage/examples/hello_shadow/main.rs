@@ -4,7 +4,7 @@
 //! `cargo run -p umbrage --example hello_shadow`, or `-- --headless OUT.png`.
 
 #[path = "../support/mod.rs"]
-mod support;
+pub(crate) mod support;
 
 use glam::camera::rh::{proj::directx::perspective, view::look_at_mat4};
 use glam::{Mat4, Vec3, Vec4};
@@ -87,7 +87,7 @@ impl Example for Hello {
         let sun = Light { kind: LightKind::Directional, ..Light::default() }; // shadow
         shadows.add_light(sun.aimed(TO_SUN, Vec3::ZERO))?; // shadow
         let things = things();
-        let mut casters = Vec::new(); // shadow
+        let mut handles = Vec::new(); // shadow
         let mut meshes = Vec::new();
         for (number, shape) in [Shape::knot(0.22), Shape::cube(), Shape::ball()].iter().enumerate() {
             let count = shape.indices.len() as u32;
@@ -97,15 +97,13 @@ impl Example for Hello {
             let mesh = CasterMesh::new(&vertices, 0..shape.vertices.len() as u32, bounds); // shadow
             let mesh = mesh.interleaved(0, size_of::<Vertex>() as u64); // shadow
             let mesh = mesh.indexed(&indices, wgpu::IndexFormat::Uint32, 0..count); // shadow
-            let mesh = shadows.add_mesh(&mesh)?; // shadow
-            let (_ground, standing) = things.split_last().ok_or("there is nothing to draw")?; // shadow
-            let of_mesh = standing.iter().filter(|(of, _)| *of == number && !plain); // shadow
-            for (_, placed) in of_mesh {
-                // shadow
-                casters.push(shadows.add_caster(mesh, placed.world_from_object)?); // shadow
-            } // shadow
+            handles.push(shadows.add_mesh(&mesh)?); // shadow
             meshes.push(Mesh { vertices, indices, count });
         }
+        // All but the ground cast.
+        let casting = if plain { 0 } else { things.len() - 1 }; // shadow
+        let add = |(of, at): &(usize, Placed)| shadows.add_caster(handles[*of], at.world_from_object); // shadow
+        let casters = things[..casting].iter().map(add).collect::<std::result::Result<_, _>>()?; // shadow
         let ground = Aabb { min: Vec3::new(-6.0, 0.0, -6.0), max: Vec3::new(6.0, 0.0, 6.0) }; // shadow
         shadows.add_receiver(ground)?; // shadow
         let placed: Vec<Placed> = things.iter().map(|(_, placed)| *placed).collect();
@@ -146,10 +144,9 @@ impl Example for Hello {
         let (_, knot) = &mut self.things[0];
         knot.world_from_object = knot_at(time_s);
         gpu.queue.write_buffer(&self.placed, 0, bytemuck::bytes_of(knot));
-        if let Some(caster) = self.casters.first() {
-            // shadow
-            self.shadows.move_caster(*caster, knot.world_from_object)?; // shadow
-        } // shadow
+        let turned = knot.world_from_object; // shadow
+        let moved = self.casters.first().map(|knot| self.shadows.move_caster(*knot, turned)); // shadow
+        moved.transpose()?; // shadow
         let around = 0.7 + 0.1 * time_s;
         let eye = Vec3::new(6.6 * around.sin(), 4.2, 6.6 * around.cos());
         let view_from_world = look_at_mat4(eye, Vec3::Y * 0.7, Vec3::Y);

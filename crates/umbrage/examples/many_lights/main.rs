@@ -5,7 +5,7 @@
 //! `cargo run -p umbrage --example many_lights`, or `-- --headless OUT.png`; `--plain`: without casters.
 
 #[path = "../support/mod.rs"]
-mod support;
+pub(crate) mod support;
 
 use glam::camera::rh::{proj::directx::perspective, view::look_at_mat4};
 use glam::{Mat4, Vec3};

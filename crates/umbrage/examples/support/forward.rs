@@ -151,7 +151,7 @@ impl Forward {
         };
         let text = shadows.wgsl(1) + include_str!("forward.wgsl");
         let layouts = [globals, shadows.bind_group_layout()];
-        lit_pipeline(gpu, format, (text, "vs"), &layouts, &[Some(corner), Some(placed)])
+        lit_pipeline(gpu, format, (text, ["vs", "fs"]), &layouts, &[Some(corner), Some(placed)])
     }
 
     /// Says what the next pass shows: the camera and the lights, each with its number in the shader.
@@ -220,11 +220,11 @@ impl Forward {
     }
 }
 
-/// A pipeline of the forward pass: text with the entry point of its vertices; that of pixels is `fs`.
+/// A pipeline of the forward pass: its text, and the entry points of vertices and pixels.
 pub fn lit_pipeline(
     gpu: &Gpu,
     format: wgpu::TextureFormat,
-    (wgsl, vertex_entry): (String, &str),
+    (wgsl, [vertex, pixel]): (String, [&str; 2]),
     groups: &[&wgpu::BindGroupLayout],
     buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
 ) -> wgpu::RenderPipeline {
@@ -243,7 +243,7 @@ pub fn lit_pipeline(
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some(vertex_entry),
+            entry_point: Some(vertex),
             compilation_options: Default::default(),
             buffers,
         },
@@ -258,7 +258,7 @@ pub fn lit_pipeline(
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fs"),
+            entry_point: Some(pixel),
             compilation_options: Default::default(),
             targets: &[Some(format.into())],
         }),

@@ -61,8 +61,12 @@ fn arrives(lamp: Lamp, to_lamp: vec3f, normal: vec3f) -> vec3f {
 
 @fragment
 fn fs(s: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    return lit(s, select(-1.0, 1.0, front) * normalize(s.normal));
+}
+
+fn lit(s: Surface, normal: vec3f) -> vec4f {
+    // The triangle's own normal: maps know nothing of smooth ones.
     let face = cross(dpdy(s.p_world), dpdx(s.p_world));
-    let normal = select(-1.0, 1.0, front) * normalize(s.normal);
     var sum = globals.ambient;
     for (var i = 0u; i < globals.count; i++) {
         let lamp = globals.lamps[i];

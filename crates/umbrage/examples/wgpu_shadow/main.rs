@@ -6,7 +6,7 @@
 //! `cargo run -p umbrage --example wgpu_shadow`, or `-- --headless OUT.png`; `--plain`: without casters.
 
 #[path = "../support/mod.rs"]
-mod support;
+pub(crate) mod support;
 
 use glam::camera::rh::{proj::directx::perspective, view::look_at_mat4};
 use glam::{Mat4, Quat, Vec3, Vec4};
