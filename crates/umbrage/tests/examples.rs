@@ -88,8 +88,7 @@ fn what_moved_frame_by_frame_is_where_it_would_be_at_once() {
     // Maps of what moves have room around it, so their texels lie elsewhere: edges of shadows differ.
     let off = differences(&moved, &at_once).len();
     let earlier = differences(&moved, &shoot(&frames[35..36])).len();
-    eprintln!("{off} {earlier}");
-    assert!(off < 600 && earlier > 4 * off, "{off} pixels differ, and {earlier} from 0.3 s before");
+    assert!(off < 200 && earlier > 2000, "{off} pixels differ, and {earlier} from 0.3 s before");
 }
 
 /// A picture is refused when wgpu had anything to say against how it was drawn.
@@ -128,11 +127,37 @@ fn marked(text: &str) -> usize {
     text.lines().filter(is_code).filter(|line| is_marked(line)).count()
 }
 
-/// Code that names the library, or what is made by it, without a mark.
-fn unmarked(text: &str) -> Vec<&str> {
+/// Code that names the library, or what is made by it.
+fn naming(text: &str) -> impl Iterator<Item = &str> {
     let names = ["umbrage", "Umbrage", "UMBRAGE", "shadows", "Shadows", "caster", "Caster"];
-    let code = |line: &&str| is_code(line) && !is_marked(line);
-    text.lines().filter(code).filter(|line| names.iter().any(|name| line.contains(name))).collect()
+    text.lines().filter(is_code).filter(move |line| names.iter().any(|name| line.contains(name)))
+}
+
+/// The same without a mark.
+fn unmarked(text: &str) -> Vec<&str> {
+    naming(text).filter(|line| !is_marked(line)).collect()
+}
+
+/// Does the table of examples have these numbers of lines?
+fn tells(example: &str, [in_rust, in_wgsl]: [usize; 2]) {
+    let (table, told) = (read("README.md"), format!("| {in_rust} + {in_wgsl} |"));
+    let of_it = format!("[`{example}`]");
+    let row =
+        table.lines().find(|line| line.contains(&of_it)).unwrap_or_else(|| panic!("no row of {example}"));
+    assert!(row.contains(&told), "examples/README.md does not say `{told}` of {example}: {row}");
+}
+
+#[test]
+fn the_table_tells_how_many_lines_name_the_library() {
+    let count = |names: &[&str]| names.iter().map(|name| naming(&read(name)).count()).sum::<usize>();
+    let in_support = [count(&["support/forward.rs"]), count(&["support/forward.wgsl"])];
+    assert!(in_support[0] > 10);
+    tells("support/forward.rs", in_support);
+    tells("custom_filter", [count(&["custom_filter/main.rs"]), count(&["custom_filter/ring.wgsl"])]);
+    tells("many_lights", [count(&["many_lights/main.rs"]), 0]);
+    let animated_wgsl = ["animated/blades.wgsl", "animated/cast.wgsl", "animated/lit.wgsl"];
+    tells("animated", [count(&["animated/main.rs", "animated/blades.rs"]), count(&animated_wgsl)]);
+    tells("wgpu_shadow", [count(&["wgpu_shadow/main.rs"]), count(&["wgpu_shadow/forward.wgsl"])]);
 }
 
 #[test]
@@ -144,10 +169,7 @@ fn the_first_shadow_takes_fewer_than_fifty_lines() {
     let (in_rust, in_wgsl) = (marked(&rust), marked(&wgsl));
     assert!(in_rust > 10 && in_wgsl > 0, "{in_rust} and {in_wgsl} marked lines: is this still counted?");
     assert!(in_rust + in_wgsl < 50, "{in_rust} marked lines in Rust, {in_wgsl} in WGSL");
-    let table = read("README.md");
-    let told = format!("{} + {}", in_rust, in_wgsl);
-    let row = table.lines().find(|line| line.contains("[`hello_shadow`]")).expect("its row");
-    assert!(row.contains(&told), "examples/README.md does not say `{told}` of hello_shadow: {row}");
+    tells("hello_shadow", [in_rust, in_wgsl]);
 
     // A line that is not marked would be seen, and so would one that is.
     assert_eq!(unmarked("let at = umbrage_visibility(0u, p, n, x);").len(), 1);

@@ -89,7 +89,7 @@ impl Example for Hello {
         let things = things();
         let mut handles = Vec::new(); // shadow
         let mut meshes = Vec::new();
-        for (number, shape) in [Shape::knot(0.22), Shape::cube(), Shape::ball()].iter().enumerate() {
+        for shape in [Shape::knot(0.22), Shape::cube(), Shape::ball()] {
             let count = shape.indices.len() as u32;
             let vertices = gpu.buffer(&shape.vertices, wgpu::BufferUsages::VERTEX);
             let indices = gpu.buffer(&shape.indices, wgpu::BufferUsages::INDEX);

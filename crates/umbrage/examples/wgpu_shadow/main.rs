@@ -127,6 +127,7 @@ impl Example for WgpuShadow {
 
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         self.shadows.record(&mut encoder)?;
+        // Anew for each frame, so that there is nothing to do when the window gets another size.
         let depth = gpu.texture(target.size_px, DEPTH_FORMAT, wgpu::TextureUsages::empty());
         let sky = wgpu::Color { r: 0.1, g: 0.2, b: 0.3, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
