@@ -1,6 +1,8 @@
 //! The examples draw what somebody looked at, and without what they are about they do not. No call of theirs is against wgpu's rules
 //! on a device with default limits and no feature. The first shadow takes few lines.
 
+#![allow(clippy::duplicate_mod, reason = "each example has the shared parts as modules of its own")]
+
 #[path = "../examples/animated/main.rs"]
 #[allow(dead_code, reason = "its `main` is cargo's")]
 mod animated;
@@ -97,7 +99,7 @@ fn what_wgpu_complains_of_is_an_error() {
     use hello_shadow::support::Gpu;
     let Some(gpu) = or_skip(Gpu::open(Some("llvmpipe"))) else { return };
     gpu.check().expect("nothing was done");
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+    let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: 4,
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE,
