@@ -95,7 +95,8 @@ impl Blades {
         Ok(())
     }
 
-    /// Draws it into a map: the closure of `Shadows::record_with`.
+    /// Draws it into a map: the closure of `Shadows::record_with`. The techniques of this example keep depth; maps that keep distance
+    /// in colours (`packed`, `kernel`) would need a fragment shader that writes it.
     pub fn cast(&mut self, device: &wgpu::Device, asked: &OwnDraw<'_>, pass: &mut wgpu::RenderPass<'_>) {
         let offset = &asked.pass.offset;
         let bias = wgpu::DepthBiasState { constant: offset.constant, slope_scale: offset.slope, clamp: 0.0 };
