@@ -108,7 +108,7 @@ impl Volumes {
         let (settings, size) = (&options.settings, options.size);
         let Method::Volume(choices) = settings.method else { return None };
         let device = &gpu.device;
-        let pipelines = VolumePipelines::new(device, choices.silhouette, format, SCREEN_V);
+        let pipelines = VolumePipelines::new(device, choices.silhouette, format, SCREEN_V, DEPTH);
         let of = |(mesh, by_map): (&Mesh, &bool)| {
             if *by_map { Shape { mesh: None, is_open: false } } else { shape(device, &pipelines, mesh) }
         };
@@ -159,7 +159,7 @@ impl Volumes {
         let value = |name| settings.value(name).unwrap_or(0.0);
         let softness =
             Softness { width_px: value("soft_px"), width_m: value("soft_m"), like: value("like_depth") };
-        let softener = Softener::new(device, SCREEN_V, size.x, size.y);
+        let softener = Softener::new(device, SCREEN_V, size.to_array(), DEPTH);
         let of_light = (0..self.lights.len())
             .filter_map(|light| Some(softener.of(device, self.v.layer(light as u32)?, depth_only)))
             .collect();

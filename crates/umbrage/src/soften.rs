@@ -2,7 +2,7 @@
 //! (Bjorke 2005, "Shadowing Strategies for HLSL and FX Composer", soft stencil shadows).
 
 use glam::{IVec2, Mat4, Vec4};
-use umbrage_core::DEPTH;
+use umbrage_core::DepthConvention;
 use umbrage_core::wgsl::assemble;
 
 /// How V is blurred.
@@ -39,6 +39,7 @@ pub struct Softener {
     between: wgpu::TextureView,
     bytes: u64,
     height_px: u32,
+    depth: DepthConvention,
 }
 
 /// A light's V, ready to be blurred in place.
@@ -53,8 +54,14 @@ fn shader() -> String {
 }
 
 impl Softener {
-    /// For V of `format` and so many pixels. Memory: one more layer of V.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, width_px: u32, height_px: u32) -> Self {
+    /// For V of `format` and so many pixels. `depth` is the way in which the depth of the surfaces runs, cleared to
+    /// [`DepthConvention::clear`] where nothing is. Memory: one more layer of V.
+    pub fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        [width_px, height_px]: [u32; 2],
+        depth: DepthConvention,
+    ) -> Self {
         let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -138,6 +145,7 @@ impl Softener {
             between: between.create_view(&Default::default()),
             bytes: u64::from(width_px) * u64::from(height_px) * u64::from(texel_bytes),
             height_px,
+            depth,
         }
     }
 
@@ -152,7 +160,7 @@ impl Softener {
                 width_m: softness.width_m,
                 px_per_m: 0.5 * self.height_px as f32 * clip_from_view.y_axis.y.abs(),
                 like: softness.like,
-                nothing: DEPTH.clear(),
+                nothing: self.depth.clear(),
                 pad: 0.0,
             };
             queue.write_buffer(uniform, 0, bytemuck::bytes_of(&made));

@@ -61,7 +61,8 @@ fn pipeline(
         blend: Some(wgpu::BlendState { color: add, alpha: add }),
         write_mask: wgpu::ColorWrites::RED | wgpu::ColorWrites::GREEN,
     };
-    let compare = counted.map_or(wgpu::CompareFunction::Always, Counted::depth_compare);
+    let compare =
+        counted.map_or(wgpu::CompareFunction::Always, |counted| counted.depth_compare(volumes.depth()));
     volumes.make(
         device,
         winding,

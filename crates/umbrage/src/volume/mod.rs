@@ -7,6 +7,9 @@
 //! on clipping. Faces are drawn a few steps of depth behind where they are, so that lids count as behind their surfaces. Where
 //! a renderer's arithmetic is another, an inset puts the lids farther behind.
 //!
+//! The caller's depth may run either way ([`DepthConvention::Reversed`] or [`DepthConvention::ZeroToOne`]); pipelines are made for
+//! one of them. Reversed, lids of far casters are the more exact: steps of a float depth are then fine where casters are far.
+//!
 //! Counts wrap at 256, so that only their end counts, not the order of their faces; a pixel within exactly 256 volumes would be
 //! lit. Where a volume has no end ([`VolumeCaster::far_plane_world`]) the eye's far plane may not cut it: either the device has
 //! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane (`far_m` infinite in
@@ -21,7 +24,7 @@ pub use light::{VolumeCaster, VolumeLight, Winding};
 pub use mesh::{VolumeMesh, VolumeSource};
 pub use pipelines::{COUNT_FORMATS, VolumePipelines, choose_count_format};
 
-use umbrage_core::DEPTH;
+use umbrage_core::DepthConvention;
 use umbrage_core::technique::volume::{Counting, Stencil};
 
 /// Which faces of a stencil that counts both ways in one draw are drawn.
@@ -80,10 +83,10 @@ impl Counted {
         self == Self::Before
     }
 
-    /// The depth test that lets through what is counted, over the depth of the lit surfaces: faces at the depth of a surface are
-    /// behind it.
-    pub fn depth_compare(self) -> wgpu::CompareFunction {
-        match (self, DEPTH.is_reversed()) {
+    /// The depth test that lets through what is counted, over the depth of the lit surfaces, which runs as `depth` says: faces at the
+    /// depth of a surface are behind it.
+    pub fn depth_compare(self, depth: DepthConvention) -> wgpu::CompareFunction {
+        match (self, depth.is_reversed()) {
             (Self::Before, true) => wgpu::CompareFunction::Greater,
             (Self::Before, false) => wgpu::CompareFunction::Less,
             (Self::Behind, true) => wgpu::CompareFunction::LessEqual,
