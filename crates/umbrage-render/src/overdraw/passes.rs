@@ -25,7 +25,7 @@ impl OverdrawPipelines {
         volumes: Option<&Volumes>,
         depth: wgpu::TextureFormat,
     ) -> Option<Self> {
-        let volumes = volumes.filter(|_| options.view == View::Volumes)?.pipelines();
+        let volumes = volumes.filter(|_| options.view == View::Volumes)?.pipelines()?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("overdraw"),
             source: wgpu::ShaderSource::Wgsl(OVERDRAW_WGSL.into()),

@@ -16,13 +16,20 @@
 //! [`umbrage_core::projection::perspective`]). A parallel eye needs an end ([`umbrage_core::volume::finite_length_m`]). Faces
 //! counted before the surface are always cut at the near plane, where their count begins.
 
+mod caster;
 mod light;
 mod mesh;
 mod pipelines;
+mod screen;
 
-pub use light::{VolumeCaster, VolumeLight, Winding};
+pub use caster::{VolumeCaster, Winding};
+pub use light::{TooManyFaces, VolumeLight};
 pub use mesh::{VolumeMesh, VolumeSource};
 pub use pipelines::{COUNT_FORMATS, VolumePipelines, choose_count_format};
+pub use screen::{
+    CUT_LENGTHS, PassWatch, ScreenVolumes, ToldVolumes, VolumeEye, VolumeItem, VolumePass, VolumeProblem,
+    VolumeSettings, VolumeWork,
+};
 
 use umbrage_core::DepthConvention;
 use umbrage_core::technique::volume::{Counting, Stencil};
@@ -108,16 +115,17 @@ pub fn record_silhouettes(
     find(&mut recorded);
 }
 
-/// Writes the faces of a light's volumes. They hold until light or casters change.
+/// Writes those faces of a light's volumes that have to be found. They hold until light or casters change:
+/// [`VolumeLight::found`] says so.
 pub fn find_silhouettes(
     recorded: &mut wgpu::ComputePass<'_>,
     pipelines: &VolumePipelines,
     light: &VolumeLight,
     meshes: &[Option<VolumeMesh>],
 ) {
-    let Some(silhouettes) = &pipelines.silhouettes else { return };
+    let (Some(silhouettes), Some(room)) = (&pipelines.silhouettes, &light.room) else { return };
     recorded.set_pipeline(silhouettes);
-    for (number, caster) in light.casters().iter().enumerate() {
+    for (number, caster) in light.casters().iter().enumerate().filter(|(number, _)| light.is_stale(*number)) {
         let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
         let items = mesh.edges() + if caster.has_caps() { mesh.triangles() } else { 0 };
         let groups = items.div_ceil(64);
@@ -126,7 +134,7 @@ pub fn find_silhouettes(
         }
         // A dispatch has 65,535 groups along an axis at most.
         let rows = groups.div_ceil(65_535);
-        recorded.set_bind_group(0, &light.silhouette_group, &[light.offset(number, false)]);
+        recorded.set_bind_group(0, &room.silhouette_group, &[light.offset(number, false)]);
         recorded.set_bind_group(1, &mesh.edge_group, &[]);
         recorded.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
     }
@@ -180,23 +188,24 @@ pub fn draw_volumes<'a>(
     draw: &[(usize, Counted)],
     pipeline: impl Fn(Counted, Winding) -> &'a wgpu::RenderPipeline,
 ) {
+    let Some(room) = &light.room else { return };
     for (number, counted) in draw {
         let Some(caster) = light.casters().get(*number) else { continue };
         let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
         match mesh.split() {
             None => {
                 recorded.set_pipeline(pipeline(*counted, caster.winding));
-                recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, false)]);
+                recorded.set_bind_group(0, &room.draw_group, &[light.offset(*number, false)]);
                 recorded.set_bind_group(1, &mesh.position_group, &[]);
-                recorded.set_index_buffer(light.indices.slice(..), wgpu::IndexFormat::Uint32);
-                recorded.draw_indexed_indirect(&light.counts, light.counts_offset(*number));
+                recorded.set_index_buffer(room.indices.slice(..), wgpu::IndexFormat::Uint32);
+                recorded.draw_indexed_indirect(&room.counts, light.counts_offset(*number));
             }
             Some(split) => {
                 recorded.set_vertex_buffer(0, split.vertices.slice(..));
                 recorded.set_index_buffer(split.indices.slice(..), wgpu::IndexFormat::Uint32);
                 for (range, reversed) in split.draws(caster.both_sides) {
                     recorded.set_pipeline(pipeline(*counted, caster.winding.turned(reversed)));
-                    recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, reversed)]);
+                    recorded.set_bind_group(0, &room.draw_group, &[light.offset(*number, reversed)]);
                     recorded.set_bind_group(1, &mesh.position_group, &[]);
                     recorded.draw_indexed(range, 0, 0..1);
                 }

@@ -167,6 +167,11 @@ impl VolumePipelines {
         self.depth
     }
 
+    /// Does a compute pass find faces?
+    pub(super) fn finds_faces(&self) -> bool {
+        self.silhouettes.is_some()
+    }
+
     pub(super) fn counts(&self, counted: Counted, faces: Faces, winding: Winding) -> &wgpu::RenderPipeline {
         &self.counts[&(counted, faces, winding)]
     }
