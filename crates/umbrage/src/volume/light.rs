@@ -3,6 +3,7 @@
 use super::{VolumeCaster, VolumeMesh, VolumePipelines};
 use glam::Vec4;
 use std::num::NonZeroU64;
+use std::ops::Range;
 use umbrage_core::volume::light_point_object;
 
 /// Mirrors `VolumeCaster` of `wgsl/volume_caster.wgsl`; see there for what each field means.
@@ -152,19 +153,50 @@ impl Room {
         self.uniforms.size() >= 2 * STRIDE * casters && self.indices.size() >= index_bytes
     }
 
-    fn write_caster(&self, queue: &wgpu::Queue, number: usize, made: &GpuVolumeCaster) {
-        let mut twins = [0u8; 2 * STRIDE as usize];
-        for (twin, reversed) in twins.chunks_exact_mut(STRIDE as usize).zip([0, 1]) {
-            let made = GpuVolumeCaster { reversed, ..*made };
-            twin[..size_of::<GpuVolumeCaster>()].copy_from_slice(bytemuck::bytes_of(&made));
+    /// Writes some neighbours' numbers, each twice, by way of `bytes`.
+    fn write_casters(
+        &self,
+        queue: &wgpu::Queue,
+        first: usize,
+        made: &[GpuVolumeCaster],
+        bytes: &mut Vec<u8>,
+    ) {
+        bytes.clear();
+        for made in made {
+            for reversed in [0, 1] {
+                let start = bytes.len();
+                let made = GpuVolumeCaster { reversed, ..*made };
+                bytes.extend_from_slice(bytemuck::bytes_of(&made));
+                bytes.resize(start + STRIDE as usize, 0);
+            }
         }
-        queue.write_buffer(&self.uniforms, 2 * STRIDE * number as u64, &twins);
+        queue.write_buffer(&self.uniforms, 2 * STRIDE * first as u64, bytes);
     }
 
-    /// Indices are counted up from nothing; one instance.
-    fn write_nothing_found(&self, queue: &wgpu::Queue, number: usize, made: &GpuVolumeCaster) {
-        let counts = [0, 1, made.first_index, 0, 0, 0, 0, 0u32];
-        queue.write_buffer(&self.counts, 4 * COUNTS * number as u64, bytemuck::cast_slice(&counts));
+    /// Indices of some neighbours are counted up from nothing; one instance each.
+    fn write_nothing_found(
+        &self,
+        queue: &wgpu::Queue,
+        first: usize,
+        made: &[GpuVolumeCaster],
+        bytes: &mut Vec<u8>,
+    ) {
+        bytes.clear();
+        for made in made {
+            bytes.extend_from_slice(bytemuck::bytes_of(&[0, 1, made.first_index, 0, 0, 0, 0, 0u32]));
+        }
+        queue.write_buffer(&self.counts, 4 * COUNTS * first as u64, bytes);
+    }
+}
+
+/// Calls `write` for each run of neighbours that are marked.
+fn for_runs(marked: &[bool], mut write: impl FnMut(Range<usize>)) {
+    let mut start = 0;
+    for run in marked.chunk_by(|a, b| a == b) {
+        if run[0] {
+            write(start..start + run.len());
+        }
+        start += run.len();
     }
 }
 
@@ -177,6 +209,10 @@ pub struct VolumeLight {
     next: Vec<GpuVolumeCaster>,
     /// Whose faces have to be found?
     stale: Vec<bool>,
+    /// While it is told: whose numbers are others, and whose faces, and what is written of them.
+    moved: Vec<bool>,
+    anew: Vec<bool>,
+    bytes: Vec<u8>,
     pub(super) room: Option<Room>,
 }
 
@@ -224,20 +260,24 @@ impl VolumeLight {
             }
         };
         self.stale.resize(casters.len(), false);
+        self.moved.clear();
+        self.anew.clear();
         for (number, (caster, next)) in casters.iter().zip(&self.next).enumerate() {
             let was = self.made.get(number);
-            if was != Some(next) {
-                room.write_caster(queue, number, next);
-            }
             let is_same_mesh = self
                 .casters
                 .get(number)
                 .is_some_and(|was| (was.mesh, was.version) == (caster.mesh, caster.version));
-            if !is_same_mesh || was.is_none_or(|was| !was.has_faces_of(next)) {
-                room.write_nothing_found(queue, number, next);
+            let is_anew = !is_same_mesh || was.is_none_or(|was| !was.has_faces_of(next));
+            self.moved.push(was != Some(next));
+            self.anew.push(is_anew);
+            if is_anew {
                 self.stale[number] = pipelines.finds_faces() && next.edges > 0;
             }
         }
+        let (next, bytes) = (&self.next, &mut self.bytes);
+        for_runs(&self.moved, |run| room.write_casters(queue, run.start, &next[run], bytes));
+        for_runs(&self.anew, |run| room.write_nothing_found(queue, run.start, &next[run], bytes));
         self.room = Some(room);
         std::mem::swap(&mut self.made, &mut self.next);
         self.casters.clear();
@@ -291,8 +331,8 @@ impl VolumeLight {
     /// Forgets all faces, so that they are found once more: from the next submission on.
     pub fn forget(&mut self, queue: &wgpu::Queue, pipelines: &VolumePipelines) {
         let Some(room) = &self.room else { return };
-        for (number, (made, stale)) in self.made.iter().zip(&mut self.stale).enumerate() {
-            room.write_nothing_found(queue, number, made);
+        room.write_nothing_found(queue, 0, &self.made, &mut self.bytes);
+        for (made, stale) in self.made.iter().zip(&mut self.stale) {
             *stale = pipelines.finds_faces() && made.edges > 0;
         }
     }
