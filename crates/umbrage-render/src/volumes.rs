@@ -100,7 +100,7 @@ impl Volumes {
         lights: usize,
     ) -> Option<Self> {
         let settings = VolumeSettings::of(&options.settings)?;
-        let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, DEPTH, SCREEN_V);
+        let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, DEPTH, SCREEN_V).ok()?;
         screen.prepare(settings.choices.silhouette);
         let mut made = Self {
             settings,

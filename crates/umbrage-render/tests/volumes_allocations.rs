@@ -33,7 +33,7 @@ fn what_is_as_it_was_allocates_nothing() {
     let Some(gpu) = gpu() else { return };
     let format = choose_count_format(&gpu.device);
     let v = wgpu::TextureFormat::R8Unorm;
-    let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, DEPTH, v);
+    let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, DEPTH, v).expect("a stencil");
     let mesh = cuboid(Vec3::splat(0.4), &ALL);
     screen.set_mesh(0, &mesh.positions, &mesh.indices).expect("a mesh");
     let mut at = Vec3::new(0.0, 1.0, 0.0);

@@ -188,7 +188,7 @@ impl<'a> Rig<'a> {
             aspect: wgpu::TextureAspect::DepthOnly,
             ..Default::default()
         });
-        let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, depth, V);
+        let mut screen = ScreenVolumes::new(&gpu.device, &gpu.queue, format, depth, V).expect("a stencil");
         for (index, (positions, indices)) in world.meshes.iter().enumerate() {
             screen.set_mesh(index, positions, indices).expect("a mesh that fits");
         }
@@ -479,5 +479,8 @@ fn what_is_kept_is_right_and_what_holds_is_kept() {
     rig.screen.remove_mesh(1);
     rig.tell(&world);
     assert_eq!(rig.screen.problems(), [VolumeProblem::NoMesh { mesh: 1 }]);
+    let plain = wgpu::TextureFormat::Depth32Float;
+    let refused = ScreenVolumes::new(&gpu.device, &gpu.queue, plain, rig.depth, V).map(|_| ());
+    assert_eq!(refused, Err(VolumeProblem::Format { format: plain }));
     assert!(rig.screen.set_mesh(usize::MAX, &[], &[]).is_err_and(|e| e.to_string().contains("mesh")));
 }

@@ -15,6 +15,8 @@
 //! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane (`far_m` infinite in
 //! [`umbrage_core::projection::perspective`]). A parallel eye needs an end ([`umbrage_core::volume::finite_length_m`]). Faces
 //! counted before the surface are always cut at the near plane, where their count begins.
+//!
+//! [`ScreenVolumes`] does all of this for any number of lights, and ends before a far plane what it can: see there.
 
 mod caster;
 mod light;

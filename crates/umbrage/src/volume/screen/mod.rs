@@ -9,7 +9,7 @@ pub use record::{PassWatch, VolumePass, VolumeWork};
 pub use sight::CUT_LENGTHS;
 pub use told::{VolumeEye, VolumeItem, VolumeProblem, VolumeSettings};
 
-use super::{Counted, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines};
+use super::{COUNT_FORMATS, Counted, VolumeCaster, VolumeLight, VolumeMesh, VolumePipelines};
 use crate::caster::unclipped;
 use crate::soften::Softener;
 use glam::{Mat4, Vec3};
@@ -82,22 +82,28 @@ pub struct ToldVolumes<'a> {
 
 impl ScreenVolumes {
     /// Volumes over a depth of `depth_format`, one of [`super::COUNT_FORMATS`], that runs as `depth` says, both in the buffer and in the
-    /// eye's projection; V is written to targets of `v_format`. Pipelines are made when a light first needs them, or by
-    /// [`Self::prepare`].
+    /// eye's projection, and has one sample a pixel; V is written to targets of `v_format`. Pipelines are made when a light first needs
+    /// them, or by [`Self::prepare`].
+    ///
+    /// # Errors
+    /// [`VolumeProblem::Format`] for another format.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         depth_format: wgpu::TextureFormat,
         depth: DepthConvention,
         v_format: wgpu::TextureFormat,
-    ) -> Self {
+    ) -> Result<Self, VolumeProblem> {
+        if !COUNT_FORMATS.contains(&depth_format) {
+            return Err(VolumeProblem::Format { format: depth_format });
+        }
         let clip_from_world = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("volume eye"),
             size: size_of::<Mat4>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self {
+        Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             meshes: Meshes::new(Formats { depth: depth_format, v: v_format, convention: depth }),
@@ -109,7 +115,7 @@ impl ScreenVolumes {
             problems: Vec::new(),
             telling: 1,
             casters_found: 0,
-        }
+        })
     }
 
     /// Makes the pipelines of one way to find faces now, and all meshes for it: no light then waits for them. Cost: a compute and

@@ -97,6 +97,15 @@ pub enum VolumeProblem {
         /// Its slot.
         light: usize,
     },
+    /// Nothing can be counted over such a depth.
+    #[error(
+        "volumes are counted in a stencil beside the depth, and {format:?} has none or no depth; use Depth24PlusStencil8, or \
+             Depth32FloatStencil8 where the device has it"
+    )]
+    Format {
+        /// Asked for.
+        format: wgpu::TextureFormat,
+    },
     /// An index or slot that nobody needs: lists are as long as the greatest.
     #[error("{what} {number} is too large; number from 0, below {limit}")]
     TooMany {
