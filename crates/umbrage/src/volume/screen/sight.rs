@@ -8,10 +8,10 @@ use umbrage_core::volume as maths;
 use umbrage_core::volume_cut::{end_before_eye_far, eye_far_plane_world, far_plane_cuts};
 use umbrage_core::{Aabb, DepthConvention, Frustum, Light};
 
-/// A parallel eye's volumes are so many times as long as the scene; and where the far plane cuts, which should then be moved behind
-/// their ends and costs depth its precision, so many times.
+/// How many times as long as the scene the volumes of a parallel eye are.
 const LENGTHS: f32 = 1e5;
-/// See [`LENGTHS`].
+/// The same where the device clips depth: the eye's far plane should then lie behind their ends
+/// ([`umbrage_core::volume::finite_length_m`] of so many times), which costs depth its precision.
 pub const CUT_LENGTHS: f32 = 64.0;
 
 /// An eye with all that is asked of it for each caster.
