@@ -1,18 +1,13 @@
 //! Ten thousand casters, sixteen lights: where nothing moves nothing is asked of heap or GPU; where some move, as much as they are.
 
-#[path = "common/allocations.rs"]
-mod allocations;
 mod common;
 #[path = "common/crowd.rs"]
 mod crowd;
 
-use allocations::{Counting, during};
+use allocation_counter::measure;
 use common::{frame, gpu};
 use crowd::{CASTERS, LIGHTS, crowd};
 use umbrage::shadows::{Prepared, Recorded};
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
@@ -20,12 +15,14 @@ fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
     let mut crowd = crowd(&gpu, 128);
     let step = |crowd: &mut crowd::Crowd| -> (Prepared, Recorded, u64) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let ((prepared, recorded), asked) = during(|| {
+        let mut done = None;
+        let asked = measure(|| {
             let prepared = crowd.shadows.prepare(&frame()).expect("prepared");
-            (prepared, crowd.shadows.record(&mut encoder).expect("recorded"))
+            done = Some((prepared, crowd.shadows.record(&mut encoder).expect("recorded")));
         });
         gpu.queue.submit([encoder.finish()]);
-        (prepared, recorded, asked)
+        let (prepared, recorded) = done.expect("it was measured");
+        (prepared, recorded, asked.count_total)
     };
     let (prepared, recorded, asked) = step(&mut crowd);
     assert_eq!((prepared.lights, prepared.views), (LIGHTS as u64, 1 + 12 + 3 * 6));
