@@ -43,6 +43,11 @@ impl Layers {
         }
     }
 
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.layers.len() as u32
+    }
+
     /// One layer, to draw to; `None` past the last.
     pub fn layer(&self, layer: u32) -> Option<&wgpu::TextureView> {
         self.layers.get(layer as usize)

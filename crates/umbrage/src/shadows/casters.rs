@@ -2,11 +2,13 @@
 
 use super::ShadowsError;
 use super::handles::{Id, Store, index};
-use super::meshes::is_finite;
+use super::lights::draws;
+use super::meshes::{Mesh, is_finite};
 use crate::caster::GpuInstance;
 use glam::{Mat4, Vec3};
 use slotmap::DefaultKey;
 use umbrage_core::Aabb;
+use umbrage_core::technique::Family;
 
 /// A caster.
 #[derive(Debug)]
@@ -233,12 +235,7 @@ impl Casters {
             let all = &self.all;
             self.moving.sort_unstable_by_key(|key| place_in_order(all, *key));
         }
-        let changes = &self.changes;
-        changes.all
-            || changes.moving
-            || changes.loose
-            || !changes.still.is_empty()
-            || !changes.room.is_empty()
+        self.has_changed()
     }
 
     /// Lets what did not move for long stand still again: all at once and seldom, because what stands still is then drawn anew
@@ -271,6 +268,28 @@ impl Casters {
         }
         let of = |key: &DefaultKey| Some((*key, self.all.at(*key)?));
         self.order.iter().filter_map(of).filter(|(_, caster)| !caster.moving)
+    }
+
+    /// Did anything change since the last frame?
+    pub fn has_changed(&self) -> bool {
+        let changes = &self.changes;
+        changes.all
+            || changes.moving
+            || changes.loose
+            || !changes.still.is_empty()
+            || !changes.room.is_empty()
+    }
+
+    /// Are there casters that a family cannot draw? Counted when casters were added, removed or changed.
+    pub fn left_to_maps(&self, meshes: &Store<Mesh>, family: Family) -> bool {
+        match family {
+            Family::None => false,
+            Family::Map => true,
+            _ => {
+                let mesh_of = |caster: &Caster| caster.mesh.and_then(|mesh| meshes.at(mesh.key));
+                self.all.iter().any(|(_, caster)| !draws(family, mesh_of(caster)))
+            }
+        }
     }
 
     /// Boxes of all that casts or receives, with room for what moves.

@@ -19,6 +19,7 @@ mod options;
 mod pool;
 mod prepare;
 mod record;
+mod screen;
 mod table;
 mod variants;
 mod views;
@@ -38,11 +39,12 @@ use crate::growing::Growing;
 use crate::maps::{comparison_sampler, point_sampler};
 use casters::{Casters, check_box, check_transform};
 use casting::Casting;
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use handles::{Store, index};
 use lights::Lit;
 use meshes::Mesh;
 use pool::Pool;
+use screen::Screen;
 use std::hash::{BuildHasher, Hasher};
 use std::num::NonZeroU64;
 use table::{GpuLit, Table};
@@ -75,6 +77,10 @@ pub struct Shadows {
     moving_placed: Growing,
     /// Memory that frames use again.
     scratch: Scratch,
+    /// V on the screen, where a technique finds it there.
+    screen: Option<Screen>,
+    /// Box around all that there is.
+    scene_world: Aabb,
     frame: Option<Frame>,
     /// Lights were added, removed or changed.
     lights_changed: bool,
@@ -116,12 +122,13 @@ impl Shadows {
         let table = Table::new(device, options.most_lights, options.most_views);
         let (comparison, point) = (comparison_sampler(device), point_sampler(device));
         let layout = wgsl::layout(device, &declared);
+        let screen = declared.screen.then(|| Screen::new(device, options.depth_stencil));
         let resources = wgsl::Resources {
             table: &table,
             pools: &pools,
             comparison: &comparison,
             point: &point,
-            screen: None,
+            screen: screen.as_ref().map(|screen| screen.v.array()),
         };
         let group = wgsl::group(device, &layout, &declared, &resources);
         let view_layout = crate::caster::view_layout(device);
@@ -167,6 +174,8 @@ impl Shadows {
             matrices,
             view_group,
             scratch: Scratch::default(),
+            screen,
+            scene_world: Aabb::EMPTY,
             frame: None,
             lights_changed: true,
             is_prepared: false,
@@ -180,10 +189,48 @@ impl Shadows {
     /// [`ShadowsError::Buffer`] when a buffer cannot be read so, [`ShadowsError::ForeignDevice`], [`ShadowsError::Number`].
     pub fn add_mesh(&mut self, mesh: &CasterMesh<'_>) -> Result<MeshHandle, ShadowsError> {
         let made = Mesh::new(&self.device, &self.cut_out_layout, mesh)?;
-        Ok(MeshHandle(self.meshes.insert(made)))
+        let id = self.meshes.insert(made);
+        if let Some((positions, indices)) = mesh.shape_on_cpu() {
+            self.keep_shape(MeshHandle(id), positions, indices).inspect_err(|_| {
+                // It was not there before, and so it goes.
+                let _ = self.meshes.remove(id);
+            })?;
+        }
+        Ok(MeshHandle(id))
     }
 
-    /// Says that the vertices in a mesh's buffers are others now, inside of `bounds_object`: all its casters count as moved. Cost:
+    fn keep_shape(
+        &mut self,
+        mesh: MeshHandle,
+        positions: &[Vec3],
+        indices: &[u32],
+    ) -> Result<(), ShadowsError> {
+        let number = index(mesh.0.key);
+        match self.screen.as_mut().filter(|_| self.declared.volumes) {
+            Some(screen) => screen.set_shape(number, positions, indices),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives a mesh another shape for shadow volumes, after [`Shadows::reshape_mesh`]: until then, lights whose technique makes
+    /// volumes draw it into a map. Cost: its edges are found anew, 0.4 microseconds a triangle.
+    ///
+    /// # Errors
+    /// [`ShadowsError::Volume`] for one too large, [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
+    pub fn set_shape(
+        &mut self,
+        mesh: MeshHandle,
+        positions: &[Vec3],
+        indices: &[u32],
+    ) -> Result<(), ShadowsError> {
+        self.meshes.get(mesh.0)?;
+        self.keep_shape(mesh, positions, indices)?;
+        self.meshes.get_mut(mesh.0)?.has_shape = true;
+        Ok(())
+    }
+
+    /// Says that the vertices in a mesh's buffers are others now, inside of `bounds_object`: all its casters count as moved, and its
+    /// shape is forgotten ([`Shadows::set_shape`]). Cost:
     /// proportional to the number of casters.
     ///
     /// # Errors
@@ -193,6 +240,7 @@ impl Shadows {
         let changed = self.meshes.get_mut(mesh.0)?;
         changed.bounds_object = bounds_object;
         changed.version += 1;
+        changed.has_shape = false;
         let users = self.casters.all.iter().filter(|(_, caster)| caster.mesh == Some(mesh.0));
         let users: Vec<_> = users.map(|(key, caster)| (key, caster.world_from_object)).collect();
         for (key, world_from_object) in users {
@@ -212,6 +260,9 @@ impl Shadows {
             return Err(ShadowsError::InUse { casters });
         }
         self.meshes.remove(mesh.0)?;
+        if let Some(screen) = &mut self.screen {
+            screen.remove_shape(index(mesh.0.key));
+        }
         self.is_prepared = false;
         Ok(())
     }
@@ -455,7 +506,8 @@ impl Shadows {
         let kept: u64 = self.lights.iter().map(|(_, lit)| kept(lit)).sum();
         let peels = self.castings.iter().filter_map(|casting| casting.peel.as_ref());
         let peeled: u64 = peels.map(|(_, peel)| peel.memory_bytes()).sum();
-        self.pools.iter().map(Pool::memory_bytes).sum::<u64>() + kept + peeled
+        let screen = self.screen.as_ref().map_or(0, Screen::memory_bytes);
+        self.pools.iter().map(Pool::memory_bytes).sum::<u64>() + kept + peeled + screen
     }
 }
 
