@@ -1,17 +1,15 @@
 //! Projective masks of a scene's lights: which objects throw one, what each is drawn with, and which have to be drawn anew.
 
-use crate::draw_list::{MaskPart, Work};
+use crate::draw_list::{MaskPart, ReceiverBatch, Work};
 use crate::geometry::Geometry;
 use crate::gpu::Gpu;
 use crate::layout::GpuInstance;
 use crate::lights::eye_of;
 use crate::maps::Growing;
-use crate::maskable::{mask_options, most_of_light};
 use crate::materials::MaterialEntry;
 use crate::moving::World;
 use crate::outlines::Outlines;
 use crate::screen_v::{SCREEN_V, screen_v};
-use crate::shadowed::{ReceiverBatch, Rect};
 use crate::timing::Queries;
 use crate::{RenderError, RenderOptions};
 use glam::{Mat4, UVec2};
@@ -20,12 +18,13 @@ use std::num::NonZeroU64;
 use std::ops::Range;
 use std::sync::Arc;
 use umbrage::caster::{CasterVertices, GpuCasterView, NO_DEFORM};
-use umbrage::core::fit::{MaskError, MaskView, fit_mask};
+use umbrage::core::fit::{MaskError, MaskOptions, MaskView, fit_mask};
 use umbrage::core::layout_mask::GpuMask;
+use umbrage::core::masks::{MOST_MASKS, Picture, Rect, Shadow, most_of_light};
 use umbrage::core::technique::Method;
 use umbrage::core::technique::mask::{Lookup, Mask, Receivers};
 use umbrage::core::volume::light_point_world;
-use umbrage::core::{Aabb, Light};
+use umbrage::core::{Aabb, DEPTH, Light};
 use umbrage::layers::Layers;
 use umbrage::mask::{
     GpuReceiving, MaskMaps, MaskPipelines, Shadowed, SubtractPipelines, mask_sampler, record_mask_pass,
@@ -33,8 +32,6 @@ use umbrage::mask::{
 };
 use umbrage_scene::{Mesh, Scene};
 
-/// How many masks a picture may have: they stand in a uniform.
-pub const MOST_MASKS: usize = 256;
 /// Mirrors `MaskList` of `shaders.rs`.
 #[repr(C)]
 pub struct GpuMaskList {
@@ -234,7 +231,8 @@ impl Masks {
     /// Fits all masks to the world. What could not be fitted is said.
     pub fn tell(&mut self, gpu: &Gpu, world: &World, clip_from_world: Mat4, size: UVec2) -> Vec<String> {
         let mut warnings = Vec::new();
-        let options = mask_options(&self.choices, self.size_texel, &world.items.whole());
+        let picture = Picture { clip_from_world, depth: DEPTH, size };
+        let options = MaskOptions::of(&self.choices, self.size_texel, &world.items.whole());
         let lights = world.lights.len().min(crate::MAX_LIGHTS);
         let most = most_of_light(lights, self.size_texel);
         self.outlines.tidy();
@@ -271,7 +269,8 @@ impl Masks {
                         let content = self.content(&view, &parts, &light.light, time_s, &world.mesh_versions);
                         let at = placed.len() as u32;
                         placed.extend(content.parts.iter().map(|part| part.placed));
-                        let on_screen = world.items.mask_on_screen(&view, object, clip_from_world, size);
+                        let others = world.items.mask_boxes().filter(|(other, _)| *other != object);
+                        let on_screen = Shadow::new(&view, &picture).over(others.map(|(_, bounds)| bounds));
                         let wanted = Arc::new(content);
                         self.masks.push(OneMask { view, object, wanted, first: at, on_screen });
                     }
@@ -301,7 +300,7 @@ impl Masks {
         };
         let seen: Vec<[u32; 4]> = self.masks.iter().map(seen).collect();
         gpu.queue.write_buffer(&self.list, offset_of!(GpuMaskList, seen) as u64, bytemuck::cast_slice(&seen));
-        self.tell_receivers(gpu, world, (clip_from_world, size), &list);
+        self.tell_receivers(gpu, world, &picture, &list);
         warnings
     }
 
@@ -324,13 +323,7 @@ impl Masks {
     }
 
     /// Lists the receivers of each mask, where they are drawn once more.
-    fn tell_receivers(
-        &mut self,
-        gpu: &Gpu,
-        world: &World,
-        (clip_from_world, size): (Mat4, UVec2),
-        list: &[GpuMask],
-    ) {
+    fn tell_receivers(&mut self, gpu: &Gpu, world: &World, picture: &Picture, list: &[GpuMask]) {
         let Some(subtract) = &mut self.subtract else { return };
         let stride = SubtractPipelines::STRIDE as usize;
         let mut bytes = vec![0u8; list.len() * stride];
@@ -344,7 +337,7 @@ impl Masks {
         for (index, range) in self.of_light.iter().enumerate() {
             let light = light_point_world(&world.lights[index].light);
             let receiving = GpuReceiving {
-                clip_from_world,
+                clip_from_world: picture.clip_from_world,
                 eye: eye.extend(eye_w),
                 light,
                 time_s: world.time_s,
@@ -354,8 +347,8 @@ impl Masks {
             let mut draws = Vec::new();
             for number in range.clone() {
                 let mask = &self.masks[number];
-                let eye = (clip_from_world, size);
-                let batches = world.items.mask_receivers(&mask.view, mask.object, eye, &mut instances);
+                let shadow = Shadow::new(&mask.view, picture);
+                let batches = world.items.mask_receivers(&shadow, mask.object, &mut instances);
                 draws.extend(batches.into_iter().map(|batch| (number, batch)));
             }
             subtract.draws.push(draws);

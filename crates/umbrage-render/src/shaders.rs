@@ -2,10 +2,10 @@
 
 use crate::density::EDGE_ON_COS;
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
-use crate::masks::MOST_MASKS;
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
 use umbrage::core::DEPTH;
+use umbrage::core::masks::MOST_MASKS;
 use umbrage::core::technique::{Bias, Combination};
 use umbrage::core::wgsl::{assemble, assemble_with};
 
