@@ -12,6 +12,7 @@ use umbrage::core::masks::{Rect, Shadow};
 use umbrage::core::plan::Cull;
 use umbrage::core::technique::{Bias, Settings};
 use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
+use umbrage::mask::MaskPart;
 use umbrage_scene::{Mesh, Roles, Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
@@ -51,17 +52,6 @@ struct Item {
 /// A caster of which a volume can be made.
 #[derive(Clone, Copy, Debug)]
 pub struct VolumeItem {
-    /// Index of the mesh.
-    pub mesh: usize,
-    /// Where it is.
-    pub world_from_object: Mat4,
-    /// Box around it.
-    pub bounds_world: Aabb,
-}
-
-/// A mesh of a blocker.
-#[derive(Clone, Copy, Debug)]
-pub struct MaskPart {
     /// Index of the mesh.
     pub mesh: usize,
     /// Where it is.
@@ -298,8 +288,8 @@ impl Items {
         })
     }
 
-    /// The objects that may throw a mask, each with its parts.
-    pub fn mask_blockers(&self, light: &Light) -> BTreeMap<u32, Vec<MaskPart>> {
+    /// The objects that may throw a mask, each with its parts. `versions` are those of the meshes.
+    pub fn mask_blockers(&self, light: &Light, versions: &[u64]) -> BTreeMap<u32, Vec<MaskPart>> {
         let tolerance_m = 1e-6 * self.whole().size().max_element();
         let mut blockers: BTreeMap<u32, (bool, Vec<MaskPart>)> = BTreeMap::new();
         let of_kind = self.items.iter().filter(|item| item.roles.blocker && !item.by_map);
@@ -307,7 +297,8 @@ impl Items {
             let (is_needed, parts) = blockers.entry(item.object).or_default();
             *is_needed |= !self.is_idle(light, item, tolerance_m);
             parts.push(MaskPart {
-                mesh: item.mesh,
+                mesh: item.mesh as u32,
+                version: versions[item.mesh],
                 world_from_object: item.world_from_object,
                 bounds_world: item.bounds_world,
             });

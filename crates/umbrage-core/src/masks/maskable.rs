@@ -2,8 +2,9 @@
 
 use super::budget::most_of_light;
 use crate::bounds::Aabb;
-use crate::fit::{MaskError, MaskOptions, fit_mask};
+use crate::fit::{MaskError, MaskOptions, MaskView, fit_mask};
 use crate::light::Light;
+use glam::Vec3;
 
 /// Why a blocker gets no mask; a map can draw its shadow.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -72,6 +73,26 @@ pub fn maskable(
         }
     }
     found
+}
+
+/// Fits a mask to `points_world`, whose hull holds the blocker; where that has no projection, to the blocker's box. Where points are
+/// dense at one end the other may lie too far aside of their mean; what [`maskable`] lets through has room around the middle of
+/// its box.
+///
+/// Cost on the CPU: as [`fit_mask`].
+///
+/// # Errors
+/// See [`MaskError`].
+pub fn fit_blocker(
+    light: &Light,
+    points_world: impl Iterator<Item = Vec3> + Clone,
+    bounds_world: &Aabb,
+    options: &MaskOptions,
+) -> Result<MaskView, MaskError> {
+    fit_mask(light, points_world, options).or_else(|why| match why {
+        MaskError::Unreached => Err(why),
+        _ => fit_mask(light, bounds_world.corners().into_iter(), options),
+    })
 }
 
 #[cfg(test)]

@@ -6,5 +6,5 @@ mod maskable;
 mod shadow;
 
 pub use budget::{MOST_BYTES, MOST_MASKS, most_of_light, size_texel};
-pub use maskable::{Maskable, Unmaskable, maskable};
+pub use maskable::{Maskable, Unmaskable, fit_blocker, maskable};
 pub use shadow::{Picture, Rect, Shadow};
