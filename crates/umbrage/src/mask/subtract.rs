@@ -47,9 +47,9 @@ pub struct SubtractDepth {
     /// Which way it runs.
     pub convention: DepthConvention,
     /// Were its surfaces drawn by the same arithmetic to the last bit: `clip_from_world * (p_world, 1)`, `p_world` by the rows of
-    /// [`CasterStreams`], and the position `@invariant`? Then only what lies at equal depth is darkened. Else everything is that
-    /// lies no more than a few steps of depth behind it, and what lies before it too: leave out receivers that have holes, and
-    /// say by `cull_mode` which faces are not drawn.
+    /// [`CasterStreams`], and the position `@invariant`? Then only what lies at equal depth is darkened. Else all is that lies
+    /// behind it by no more than rounding may do, and what lies before it too: leave out receivers that have holes, and say by
+    /// `cull_mode` which faces are not drawn. That writes a depth for each pixel, so hidden receivers cost as much as seen ones.
     pub exact: bool,
     /// Faces that are not drawn. Default where all are: `None`.
     pub cull_mode: Option<wgpu::Face>,
@@ -76,20 +76,28 @@ impl SubtractDepth {
         }
     }
 
-    /// Moves receivers towards the eye. No edge of a shadow moves by it, because masks do not know the picture's depth; only
-    /// what is hidden by that little may darken what hides it.
-    fn bias(self) -> wgpu::DepthBiasState {
-        if self.exact {
-            return wgpu::DepthBiasState::default();
+    /// Where the depth is another's, receivers are moved towards the eye; see `nearer` of `wgsl/mask_receiver.wgsl`. No edge of a
+    /// shadow moves by it, because masks do not know the picture's depth; only what is hidden by that little may darken what
+    /// hides it. Polygon offset would not do: its steps know nothing of how far from the origin things are.
+    fn entry(self, shadowed: Shadowed) -> &'static str {
+        match (shadowed, self.exact) {
+            (Shadowed::Core, true) => "fs_core",
+            (Shadowed::Core, false) => "fs_core_nearer",
+            (Shadowed::Fringe, true) => "fs_fringe",
+            (Shadowed::Fringe, false) => "fs_fringe_nearer",
         }
-        let towards = -self.convention.away();
-        wgpu::DepthBiasState { constant: 8 * towards as i32, slope_scale: SLOPE * towards, clamp: 0.0 }
+    }
+
+    /// Some steps of a depth that counts in whole ones.
+    fn steps(self) -> f64 {
+        use wgpu::TextureFormat::{Depth32Float, Depth32FloatStencil8};
+        if matches!(self.format, Depth32Float | Depth32FloatStencil8) {
+            0.0
+        } else {
+            8.0 / f64::from(1 << 24)
+        }
     }
 }
-
-/// How far receivers are moved towards the eye, in what a plane's depth changes by over a pixel: roundings of a vertex move a
-/// steep plane by a part of a pixel.
-const SLOPE: f32 = 0.0;
 
 /// Pipelines that draw receivers over V once more for each mask.
 #[derive(Debug)]
@@ -141,6 +149,7 @@ impl SubtractPipelines {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
+        let constants = [("TOWARDS_EYE", f64::from(-depth.convention.away())), ("STEPS", depth.steps())];
         let pipeline = |shadowed: Shadowed| {
             let is_core = shadowed == Shadowed::Core;
             let mark =
@@ -181,13 +190,16 @@ impl SubtractPipelines {
                         read_mask: 0xff,
                         write_mask: 0xff,
                     },
-                    bias: depth.bias(),
+                    bias: wgpu::DepthBiasState::default(),
                 }),
                 multisample: Default::default(),
                 fragment: Some(wgpu::FragmentState {
                     module: &shader,
-                    entry_point: Some(if is_core { "fs_core" } else { "fs_fringe" }),
-                    compilation_options: Default::default(),
+                    entry_point: Some(depth.entry(shadowed)),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: if depth.exact { &[] } else { &constants },
+                        ..Default::default()
+                    },
                     targets: &[Some(wgpu::ColorTargetState {
                         format: v_format,
                         blend: Some(wgpu::BlendState { color, alpha: color }),
