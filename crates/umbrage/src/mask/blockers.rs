@@ -1,72 +1,18 @@
 //! The masks of all lights: what each should hold, what it holds, and the passes that draw the difference.
 
+use super::error::MasksError;
 use super::light::{Blocker, Changed, LightMasks, MaskPart, MaskWarning, Receiver, Telling, fit_to_boxes};
-use super::lookup::{GpuMaskList, owner_in_list};
 use super::maps::{MaskMaps, mask_sampler};
 use super::pipelines::{MaskPipelines, record_mask_pass};
-use crate::ShadowError;
+use super::upload::Upload;
 use crate::caster::{CasterVertices, GpuCasterView};
-use glam::{UVec2, Vec4};
-use std::mem::offset_of;
-use std::num::NonZeroU64;
+use glam::UVec2;
 use std::ops::Range;
 use umbrage_core::fit::{MaskError, MaskOptions, MaskView};
-use umbrage_core::layout_mask::GpuMask;
 use umbrage_core::masks::{MOST_MASKS, Picture, Rect, most_of_light, size_texel};
 use umbrage_core::technique::mask::{Lookup, Mask};
 use umbrage_core::technique::{Method, Settings};
 use umbrage_core::{Aabb, Light};
-
-/// Why masks cannot be kept as asked for.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MasksError {
-    /// A technique of another family.
-    #[error("`{technique}` makes no masks; use `mask` or `mask-subtractive`")]
-    NoMasks {
-        /// What was asked for.
-        technique: &'static str,
-    },
-    /// More lights than a picture has masks.
-    #[error("masks for {lights} lights are more than the {MOST_MASKS} of a picture; hand in fewer lights")]
-    TooManyLights {
-        /// What was asked for.
-        lights: usize,
-    },
-    /// A light that there is no room for.
-    #[error("there is no light {light}: masks were made for {lights}, numbered from 0; make them for more")]
-    NoLight {
-        /// What was asked for.
-        light: usize,
-        /// How many there are.
-        lights: usize,
-    },
-    /// A light whose masks are of another size: all stand in one texture.
-    #[error(
-        "light {light} asks for masks of {asked} texels, and all of these have {size_texel}; give each light the same mask_size"
-    )]
-    OtherSize {
-        /// The light's number.
-        light: usize,
-        /// What was asked for, texels.
-        asked: u32,
-        /// What there is, texels.
-        size_texel: u32,
-    },
-    /// A light whose masks are looked up otherwise: all have one sampler.
-    #[error(
-        "light {light} asks for lookup={asked}, and all of these masks have another; give each light the same lookup"
-    )]
-    OtherLookup {
-        /// The light's number.
-        light: usize,
-        /// What was asked for.
-        asked: &'static str,
-    },
-    /// Textures of the device are too small.
-    #[error(transparent)]
-    Shadow(#[from] ShadowError),
-}
 
 /// One mask, to be drawn or looked at.
 #[derive(Clone, Copy, Debug)]
@@ -104,15 +50,6 @@ struct Held {
     parts: Vec<MaskPart>,
 }
 
-/// What is written to the GPU, kept for its memory.
-#[derive(Debug, Default)]
-struct Scratch {
-    masks: Vec<GpuMask>,
-    seen: Vec<[u32; 4]>,
-    matrices: Vec<u8>,
-    instances: Vec<[Vec4; 3]>,
-}
-
 /// The masks of any number of lights: a layer for each light and blocker, drawn again when what it shows differs.
 ///
 /// In every frame [`Self::begin`], [`Self::tell`] for each light that shines, [`Self::finish`], [`Self::record`]. When nothing
@@ -126,14 +63,10 @@ pub struct BlockerMasks {
     maps: MaskMaps,
     sampler: wgpu::Sampler,
     pipelines: MaskPipelines,
-    matrices: wgpu::Buffer,
-    view_group: wgpu::BindGroup,
-    instances: wgpu::Buffer,
-    list: wgpu::Buffer,
+    upload: Upload,
     lights: Vec<LightMasks>,
     order: Vec<Numbered>,
     of_light: Vec<Range<usize>>,
-    views: Vec<GpuCasterView>,
     held: Vec<Held>,
     picture: Option<Picture>,
     receivers: Vec<Receiver>,
@@ -141,41 +74,30 @@ pub struct BlockerMasks {
     is_moved: bool,
     is_later: bool,
     changed: Changed,
-    scratch: Scratch,
     changes: u64,
     version: u64,
 }
 
-fn buffer(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u64) -> wgpu::Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
+/// The mask of a number.
+fn numbered<'a>(order: &[Numbered], lights: &'a [LightMasks], number: usize) -> Option<BlockerMask<'a>> {
+    let Numbered { light, blocker, first_instance } = *order.get(number)?;
+    let of_light = lights.get(light)?;
+    let (mask, view) = of_light.mask(blocker)?;
+    Some(BlockerMask {
+        number,
+        light,
+        of: of_light.light()?,
+        object: mask.object,
+        parts: &mask.parts,
+        first_instance,
+        view,
+        on_screen: mask.on_screen,
     })
 }
 
-/// A uniform for each mask, and the group that picks one by a dynamic offset.
-fn views(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    masks: u32,
-) -> (wgpu::Buffer, wgpu::BindGroup) {
-    let size = u64::from(masks) * u64::from(GpuCasterView::STRIDE);
-    let matrices = buffer(device, "umbrage mask views", wgpu::BufferUsages::UNIFORM, size);
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("umbrage mask views"),
-        layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &matrices,
-                offset: 0,
-                size: NonZeroU64::new(size_of::<GpuCasterView>() as u64),
-            }),
-        }],
-    });
-    (matrices, group)
+/// All masks by their numbers.
+fn in_order<'a>(order: &'a [Numbered], lights: &'a [LightMasks]) -> impl Iterator<Item = BlockerMask<'a>> {
+    (0..order.len()).filter_map(|number| numbered(order, lights, number))
 }
 
 impl BlockerMasks {
@@ -204,23 +126,17 @@ impl BlockerMasks {
         let most = most_of_light(lights, size_texel);
         let maps = MaskMaps::new(device, size_texel, masks.clamp(1, most * lights.max(1)) as u32)?;
         let pipelines = MaskPipelines::new(device, cut_out_layout, vertices);
-        let (matrices, view_group) = views(device, &pipelines.view_layout, maps.count());
-        let list = size_of::<GpuMaskList>() as u64;
         Ok(Self {
             sampler: mask_sampler(device, choices.lookup == Lookup::Linear),
             choices,
             size_texel,
             most,
+            upload: Upload::new(device, &pipelines.view_layout, maps.count()),
             maps,
             pipelines,
-            matrices,
-            view_group,
-            instances: buffer(device, "umbrage blockers", wgpu::BufferUsages::VERTEX, 48),
-            list: buffer(device, "umbrage mask list", wgpu::BufferUsages::UNIFORM, list),
             lights: std::iter::repeat_with(LightMasks::default).take(lights).collect(),
             order: Vec::new(),
             of_light: vec![0..0; lights],
-            views: Vec::new(),
             held: Vec::new(),
             picture: None,
             receivers: Vec::new(),
@@ -228,7 +144,6 @@ impl BlockerMasks {
             is_moved: false,
             is_later: false,
             changed: Changed::default(),
-            scratch: Scratch::default(),
             changes: 0,
             version: 0,
         })
@@ -323,7 +238,7 @@ impl BlockerMasks {
     /// Ends what began: numbers the masks, and hands the GPU what is not as it was, with the next submission.
     ///
     /// # Errors
-    /// [`ShadowError::TooLarge`] where more masks are wanted than the device's textures have layers.
+    /// [`crate::ShadowError::TooLarge`] where more masks are wanted than the device's textures have layers.
     pub fn finish(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), MasksError> {
         self.changed.masks |= self.lights.iter().any(|light| light.is_told != light.was_told);
         if self.changed.masks {
@@ -333,17 +248,18 @@ impl BlockerMasks {
             let most = (self.most * self.lights.len().max(1)).min(MOST_MASKS);
             let count = self.order.len().next_power_of_two().min(most).max(self.order.len());
             self.maps = MaskMaps::new(device, self.size_texel, count as u32)?;
-            (self.matrices, self.view_group) = views(device, &self.pipelines.view_layout, self.maps.count());
+            self.upload.grow(device, &self.pipelines.view_layout, self.maps.count());
             self.held.iter_mut().for_each(|held| held.view = None);
             self.changes += 1;
             self.changed.masks = true;
         }
         if self.changed.masks || self.is_later {
-            self.write_masks(device, queue);
+            let masks = in_order(&self.order, &self.lights);
+            self.upload.write_masks(device, queue, masks, self.time_s);
             self.version += 1;
         }
         if self.changed.masks || self.changed.pixels {
-            self.write_pixels(queue);
+            self.upload.write_pixels(queue, in_order(&self.order, &self.lights));
         }
         Ok(())
     }
@@ -364,73 +280,14 @@ impl BlockerMasks {
         self.held.resize_with(most, Held::default);
     }
 
-    fn write_masks(&mut self, device: &wgpu::Device, queue: &wgpu::Queue) {
-        let stride = GpuCasterView::STRIDE as usize;
-        let mut scratch = std::mem::take(&mut self.scratch);
-        let mut views = std::mem::take(&mut self.views);
-        views.clear();
-        scratch.masks.clear();
-        scratch.matrices.clear();
-        scratch.instances.clear();
-        for mask in self.iter() {
-            let view = GpuCasterView::of_mask(mask.view.clip_from_world(), self.time_s);
-            scratch.matrices.extend_from_slice(bytemuck::bytes_of(&view));
-            scratch.matrices.resize((mask.number + 1) * stride, 0);
-            views.push(view);
-            scratch.masks.push(GpuMask::new(mask.view, mask.number as u32, Some(mask.object)));
-            scratch.instances.extend(mask.parts.iter().map(|part| {
-                let world = &part.world_from_object;
-                [world.row(0), world.row(1), world.row(2)]
-            }));
-        }
-        let instances: &[u8] = bytemuck::cast_slice(&scratch.instances);
-        if instances.len() as u64 > self.instances.size() {
-            let size = instances.len().next_power_of_two() as u64;
-            self.instances = buffer(device, "umbrage blockers", wgpu::BufferUsages::VERTEX, size);
-        }
-        if !views.is_empty() {
-            queue.write_buffer(&self.instances, 0, instances);
-            queue.write_buffer(&self.matrices, 0, &scratch.matrices);
-            queue.write_buffer(&self.list, 0, bytemuck::cast_slice(&scratch.masks));
-        }
-        (self.scratch, self.views) = (scratch, views);
-    }
-
-    fn write_pixels(&mut self, queue: &wgpu::Queue) {
-        let mut seen = std::mem::take(&mut self.scratch.seen);
-        seen.clear();
-        seen.extend(self.iter().map(|mask| {
-            let rect = mask.on_screen.unwrap_or(Rect { min: UVec2::ZERO, max: UVec2::ZERO });
-            let corner = |at: UVec2| at.x | (at.y << 16);
-            [corner(rect.min), corner(rect.max), owner_in_list(mask.object), 0]
-        }));
-        if !seen.is_empty() {
-            let at = offset_of!(GpuMaskList, seen) as u64;
-            queue.write_buffer(&self.list, at, bytemuck::cast_slice(&seen));
-        }
-        self.scratch.seen = seen;
-    }
-
     /// All masks by their numbers, as [`Self::finish`] left them.
     pub fn iter(&self) -> impl Iterator<Item = BlockerMask<'_>> {
-        (0..self.order.len()).filter_map(|number| self.get(number))
+        in_order(&self.order, &self.lights)
     }
 
     /// The mask of a number; `None` past the last.
     pub fn get(&self, number: usize) -> Option<BlockerMask<'_>> {
-        let Numbered { light, blocker, first_instance } = *self.order.get(number)?;
-        let of_light = self.lights.get(light)?;
-        let (mask, view) = of_light.mask(blocker)?;
-        Some(BlockerMask {
-            number,
-            light,
-            of: of_light.light()?,
-            object: mask.object,
-            parts: &mask.parts,
-            first_instance,
-            view,
-            on_screen: mask.on_screen,
-        })
+        numbered(&self.order, &self.lights, number)
     }
 
     /// How many masks there are.
@@ -455,7 +312,8 @@ impl BlockerMasks {
     }
 
     fn is_stale(&self, mask: &BlockerMask<'_>) -> bool {
-        let (Some(held), Some(view)) = (self.held.get(mask.number), self.views.get(mask.number)) else {
+        let (Some(held), Some(view)) = (self.held.get(mask.number), self.upload.views.get(mask.number))
+        else {
             return true;
         };
         let same_parts = held.parts.len() == mask.parts.len()
@@ -481,15 +339,15 @@ impl BlockerMasks {
                 continue;
             }
             record_mask_pass(encoder, &self.maps, number as u32, stamps(done), |recorded| {
-                recorded.set_bind_group(0, &self.view_group, &[number as u32 * GpuCasterView::STRIDE]);
-                recorded.set_vertex_buffer(1, self.instances.slice(..));
+                recorded.set_bind_group(0, &self.upload.view_group, &[number as u32 * GpuCasterView::STRIDE]);
+                recorded.set_vertex_buffer(1, self.upload.instances.slice(..));
                 draw(recorded, done, &mask);
             });
             done += 1;
             let Numbered { light, blocker, .. } = self.order[number];
             let drawn = self.lights.get(light).and_then(|light| light.mask(blocker));
             if let (Some((drawn, _)), Some(held)) = (drawn, self.held.get_mut(number)) {
-                held.view = self.views.get(number).copied();
+                held.view = self.upload.views.get(number).copied();
                 held.parts.clear();
                 held.parts.extend_from_slice(&drawn.parts);
             }
@@ -500,7 +358,7 @@ impl BlockerMasks {
     /// What shaders look masks up with, in the order of [`super::masks_wgsl`]: the list of all, the masks, their sampler. Others
     /// after [`Self::changes`] has grown.
     pub fn bindings(&self) -> (&wgpu::Buffer, &wgpu::TextureView, &wgpu::Sampler) {
-        (&self.list, self.maps.array(), &self.sampler)
+        (&self.upload.list, self.maps.array(), &self.sampler)
     }
 
     /// How often the texture was made anew for want of room: bind groups of before show masks that are drawn no more.
@@ -545,7 +403,6 @@ impl BlockerMasks {
 
     /// Memory of masks, list and instances, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let buffers = self.list.size() + self.matrices.size() + self.instances.size();
-        self.maps.memory_bytes() + buffers
+        self.maps.memory_bytes() + self.upload.memory_bytes()
     }
 }

@@ -5,14 +5,17 @@
 //! [`BlockerMasks`] keeps those of any number of lights, and knows which have to be drawn anew.
 
 mod blockers;
+mod error;
 mod light;
 mod lookup;
 mod maps;
 mod pipelines;
 mod subtract;
 mod subtraction;
+mod upload;
 
-pub use blockers::{BlockerMask, BlockerMasks, MasksError};
+pub use blockers::{BlockerMask, BlockerMasks};
+pub use error::MasksError;
 pub use light::{Blocker, MaskPart, MaskWarning, Receiver, fit_to_boxes};
 pub use lookup::{GpuMaskList, mask_range, masks_wgsl};
 pub use maps::{MASK_FORMAT, MaskMaps, mask_sampler};
