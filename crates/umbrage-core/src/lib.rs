@@ -22,6 +22,7 @@ pub mod projection;
 pub mod split;
 pub mod technique;
 pub mod volume;
+pub mod volume_cut;
 pub mod wgsl;
 
 pub use bounds::Aabb;

@@ -3,6 +3,10 @@
 //! A module is a plain WGSL file. Textures, samplers and parameters are arguments, names start with `umbrage_`, and
 //! nothing is bound, so any module can be pasted into any renderer together with those it needs.
 
+mod variants;
+
+pub use variants::{Variant, assemble_variants};
+
 /// A WGSL file of the library.
 #[derive(Clone, Copy, Debug)]
 pub struct Module {
@@ -111,6 +115,12 @@ pub fn assemble(names: &[&str]) -> Result<String, UnknownModule> {
 /// # Errors
 /// [`UnknownModule`] lists the names that exist.
 pub fn assemble_with(names: &[&str], own: &[(&str, &str)]) -> Result<String, UnknownModule> {
+    let chosen = MODULES.iter().zip(wanted(names)?).filter(|(_, wanted)| *wanted);
+    Ok(chosen.map(|(module, _)| text(module, own)).collect::<Vec<_>>().join("\n"))
+}
+
+/// Which modules are named or needed, in the library's order.
+fn wanted(names: &[&str]) -> Result<Vec<bool>, UnknownModule> {
     let mut wanted = vec![false; MODULES.len()];
     let mut open: Vec<&str> = names.to_vec();
     let filler = |name: &str| {
@@ -129,12 +139,12 @@ pub fn assemble_with(names: &[&str], own: &[(&str, &str)]) -> Result<String, Unk
             open.extend(MODULES[index].needs);
         }
     }
-    let text = |module: &Module| {
-        let own = own.iter().find(|(slot, _)| module.slot() == Some(slot));
-        own.map_or(module.source.to_owned(), |(_, text)| (*text).to_owned())
-    };
-    let chosen = MODULES.iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(module, _)| text(module));
-    Ok(chosen.collect::<Vec<_>>().join("\n"))
+    Ok(wanted)
+}
+
+/// A module's text, or that of one's own for its slot.
+fn text<'a>(module: &'a Module, own: &[(&str, &'a str)]) -> &'a str {
+    own.iter().find(|(slot, _)| module.slot() == Some(slot)).map_or(module.source, |(_, text)| *text)
 }
 
 #[cfg(test)]

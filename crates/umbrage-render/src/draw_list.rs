@@ -11,8 +11,10 @@ use umbrage::core::idle::flat_caster_is_idle;
 use umbrage::core::masks::{Rect, Shadow};
 use umbrage::core::plan::Cull;
 use umbrage::core::technique::{Bias, Settings};
+use umbrage::core::volume::light_may_reach;
 use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
 use umbrage::mask::MaskPart;
+use umbrage::volume::VolumeItem;
 use umbrage_scene::{Mesh, Roles, Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
@@ -47,17 +49,6 @@ struct Item {
     roles: Roles,
     /// The plane that it lies in, if it is flat.
     plane_world: Option<Vec4>,
-}
-
-/// A caster of which a volume can be made.
-#[derive(Clone, Copy, Debug)]
-pub struct VolumeItem {
-    /// Index of the mesh.
-    pub mesh: usize,
-    /// Where it is.
-    pub world_from_object: Mat4,
-    /// Box around it.
-    pub bounds_world: Aabb,
 }
 
 /// Receivers of a mask: a mesh and consecutive instances.
@@ -262,23 +253,9 @@ impl Items {
         all: bool,
     ) -> impl Iterator<Item = VolumeItem> + 'a {
         let tolerance_m = 1e-6 * self.whole().size().max_element();
-        let is_lit = |bounds: &Aabb| {
-            let in_range =
-                light.range_m.filter(|_| light.kind != LightKind::Directional).is_none_or(|range_m| {
-                    let nearest = light.position_world.clamp(bounds.min, bounds.max);
-                    nearest.distance(light.position_world) <= range_m
-                });
-            let in_cone = match light.kind {
-                LightKind::Spot { outer_rad, .. } => {
-                    cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds)
-                }
-                _ => true,
-            };
-            in_range && in_cone
-        };
         let is_needed = move |item: &&Item| {
             let is_caster = item.roles.blocker && !item.by_map && !item.bounds_world.is_empty();
-            let is_caster = is_caster && is_lit(&item.bounds_world);
+            let is_caster = is_caster && light_may_reach(light, &item.bounds_world);
             is_caster && (all || !self.is_idle(light, item, tolerance_m))
         };
         self.items.iter().filter(is_needed).map(|item| VolumeItem {

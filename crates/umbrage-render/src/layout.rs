@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
+pub use umbrage::caster::GpuInstance;
 
 /// How many lights a frame may have.
 pub const MAX_LIGHTS: usize = 16;
@@ -79,20 +80,6 @@ pub struct GpuMaterial {
     pub uv_sets: u32,
     pub pad: u32,
     pub uv_rows: [Vec4; 8],
-}
-
-/// Rows of an affine `world_from_object`, as the vertex shaders read an instance.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct GpuInstance {
-    pub rows: [Vec4; 3],
-}
-
-impl GpuInstance {
-    /// The rows of `world_from_object`.
-    pub fn new(world_from_object: &Mat4) -> Self {
-        Self { rows: [world_from_object.row(0), world_from_object.row(1), world_from_object.row(2)] }
-    }
 }
 
 /// What a full vertex holds beside its position.

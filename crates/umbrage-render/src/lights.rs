@@ -3,8 +3,7 @@
 use crate::layout::{DIRECTIONAL, GpuLight, MAX_LIGHTS, POINT, SPOT};
 use bytemuck::Zeroable;
 use glam::{Mat4, Vec3};
-use umbrage::core::area::places as places_of;
-use umbrage::core::fit::{Eye, FitError, FitOptions, ShadowView, fit, fit_all};
+use umbrage::core::fit::{Eye, FitOptions, ShadowView, fit, fit_places};
 use umbrage::core::layout::GpuView;
 use umbrage::core::lookup::{TextureOrigin, texture_from_world};
 use umbrage::core::projection::perspective;
@@ -102,31 +101,22 @@ impl Lights {
             let left_out = scene_lights.len() - MAX_LIGHTS;
             made.warnings.push(format!("{left_out} lights are left out; a picture has {MAX_LIGHTS} at most"));
         }
-        let size_texel = settings.map_size_texel();
         for (index, placed) in scene_lights.iter().take(MAX_LIGHTS).enumerate() {
             let light = &placed.light;
             light.check()?;
             let first = made.views.len();
             let mut places = 0;
             if let Some(combination) = settings.combination() {
-                let options = FitOptions {
-                    size_texel,
-                    least_near: storage.least_near(),
-                    projection: combination.projection,
-                    eye: Some(eye),
-                    border_texel: settings.reach_texel() + 1.0,
-                };
-                for place in places_on(light, settings.places(), bounds_world, &options) {
-                    match fit_all(&place, bounds_world, &options) {
-                        Ok(views) => {
-                            made.light_of_view.extend(views.iter().map(|_| place));
-                            made.views.extend(views);
-                            places += 1;
-                        }
-                        // It lights nothing, so nothing is missing.
-                        Err(FitError::NothingInReach) => {}
-                        Err(error) => made.warnings.push(format!("light {index}: {error}")),
+                let placed = fit_places(light, settings, storage, bounds_world, Some(eye));
+                match placed {
+                    Ok(placed) => {
+                        places = placed.places as usize;
+                        made.light_of_view.extend(placed.views.iter().map(|(place, _)| *place));
+                        made.views.extend(placed.views.iter().map(|(_, view)| *view));
+                        let failed = placed.failures.iter().map(|error| format!("light {index}: {error}"));
+                        made.warnings.extend(failed);
                     }
+                    Err(error) => made.warnings.push(format!("light {index}: {error}")),
                 }
                 if let Some((view, why)) = made.views.get(first).and_then(|v| v.fallback.map(|why| (v, why)))
                 {
@@ -174,18 +164,6 @@ impl Lights {
         };
         self.lights.iter().zip(scene_lights).map(relit).collect()
     }
-}
-
-/// The places of a light that it is seen from: itself, or many on an area light.
-fn places_on(light: &Light, count: u32, bounds_world: &[Aabb], options: &FitOptions) -> Vec<Light> {
-    // Only the cones of many places have to know how near to the light there is anything: from its middle.
-    let nearest_m = if count > 1 {
-        let middle = fit_all(light, bounds_world, options).ok();
-        middle.iter().flatten().map(|view| view.near_m).fold(f32::INFINITY, f32::min)
-    } else {
-        f32::INFINITY
-    };
-    places_of(light, count, nearest_m)
 }
 
 /// Where the eye is: a place and 1, or the direction towards it and 0.

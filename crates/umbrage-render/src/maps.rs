@@ -17,6 +17,7 @@ use umbrage::core::fit::Eye;
 use umbrage::core::layout::GpuView;
 use umbrage::core::plan::{Cull, Pass};
 use umbrage::core::technique::Settings;
+pub(crate) use umbrage::growing::Growing;
 use umbrage::peel::record_peel_layer;
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps, TranslucentMaps, TranslucentPipelines};
 
@@ -38,39 +39,6 @@ struct Draw {
     one_sided: bool,
     mirrored: bool,
     instances: u32,
-}
-
-/// A buffer that grows.
-#[derive(Debug)]
-pub(crate) struct Growing {
-    pub buffer: wgpu::Buffer,
-    label: &'static str,
-}
-
-impl Growing {
-    /// Room for `bytes` bytes at first, 64 at least: an empty buffer cannot be bound.
-    pub fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages, bytes: usize) -> Self {
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.max(64).next_multiple_of(16) as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        Self { buffer, label }
-    }
-
-    /// Writes from its start on; true when it is another buffer now.
-    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
-        let grows = bytes.len() as u64 > self.buffer.size();
-        if grows {
-            let size = bytes.len().next_power_of_two();
-            *self = Self::new(device, self.label, self.buffer.usage(), size);
-        }
-        if !bytes.is_empty() {
-            queue.write_buffer(&self.buffer, 0, bytes);
-        }
-        grows
-    }
 }
 
 /// One complete set of maps, with the matrices that they were drawn with.

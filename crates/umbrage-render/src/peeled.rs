@@ -1,7 +1,6 @@
 //! The layer that midpoint maps peel off first: one for all views, who take turns.
 
-use umbrage::core::plan::{Draws, Pass, Target, plan};
-use umbrage::core::technique::Settings;
+use umbrage::core::plan::Pass;
 use umbrage::format::{PEEL_DEPTH, PEEL_STORAGE};
 use umbrage::{CasterPipelines, CasterVertices, ChosenFormat, Peel, ShadowError};
 
@@ -11,14 +10,6 @@ pub(crate) struct Peeled {
     pub pass: Pass,
     pub peel: Peel,
     pub pipelines: CasterPipelines,
-}
-
-/// The planned passes that draw casters: the one that draws the maps, and the one that peels a layer off before it.
-pub(crate) fn caster_passes(settings: &Settings) -> (Option<Pass>, Option<Pass>) {
-    let passes = plan(settings).into_iter().filter(|pass| pass.draws == Draws::Casters);
-    let (peels, maps): (Vec<_>, Vec<_>) =
-        passes.partition(|pass| matches!(pass.target, Target::Layer { .. }));
-    (maps.into_iter().next(), peels.into_iter().next())
 }
 
 impl Peeled {

@@ -131,7 +131,7 @@ impl<'a> Renderer<'a> {
         let drawn = (&geometry, &maker.materials);
         let masks = Masks::new(gpu, scene, &options, &caster_layout, depth, lights, drawn)?;
         let by_mesh = by_mesh(scene, &settled.by_map);
-        let volumes = Volumes::new(gpu, scene, &options, &by_mesh, &targets, depth, lights);
+        let volumes = Volumes::new(gpu, scene, &options, &by_mesh, depth, lights);
         let needs = shader_needs(scene, &options, &maker.settings, maker.format.storage, &set.lights);
         let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs, depth);
         let screen =
@@ -232,7 +232,7 @@ impl<'a> Renderer<'a> {
         self.warnings.extend(of_masks);
         if let Some(volumes) = &mut self.volumes {
             let (size, all) = (self.options.size, self.options.all_casters);
-            self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
+            self.warnings.extend(volumes.tell(&world, eye.clip_from_world, size, all));
         }
         self.told_warnings = self.warnings.len();
         self.told = Some(now);

@@ -2,7 +2,7 @@
 
 use crate::format::SCRATCH_DEPTH;
 use crate::{ChosenFormat, ShadowMaps};
-use glam::Mat4;
+use glam::{Mat4, Vec4};
 use std::num::NonZeroU64;
 use umbrage_core::DEPTH;
 use umbrage_core::fit::ShadowView;
@@ -26,6 +26,21 @@ const UV_ALPHA: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![4 => Float32x3],
 };
+
+/// Rows of an affine `world_from_object`, as vertex shaders read an instance: 48 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct GpuInstance {
+    /// The first three rows.
+    pub rows: [Vec4; 3],
+}
+
+impl GpuInstance {
+    /// The rows of `world_from_object`.
+    pub fn new(world_from_object: &Mat4) -> Self {
+        Self { rows: [world_from_object.row(0), world_from_object.row(1), world_from_object.row(2)] }
+    }
+}
 
 impl CasterStreams {
     /// Slot 0 of positions that have a buffer of their own: the default of [`CasterVertices`].
@@ -319,7 +334,7 @@ impl CasterPipelines {
 }
 
 /// Group 0: one [`GpuCasterView`].
-fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+pub(crate) fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("umbrage caster view"),
         entries: &[wgpu::BindGroupLayoutEntry {

@@ -5,10 +5,12 @@
 
 pub mod caster;
 pub mod format;
+pub mod growing;
 pub mod layers;
 pub mod maps;
 pub mod mask;
 pub mod peel;
+pub mod shadows;
 pub mod soften;
 pub mod translucent;
 pub mod volume;
@@ -17,6 +19,10 @@ pub use caster::{CasterPipelines, CasterStreams, CasterVertices, record_caster_p
 pub use format::{ChosenFormat, choose_format};
 pub use maps::ShadowMaps;
 pub use peel::{Peel, PeelPipelines, record_peel};
+pub use shadows::{
+    CasterHandle, CasterMesh, Frame, LightHandle, MeshHandle, ReceiverHandle, Shadows, ShadowsError,
+    ShadowsOptions,
+};
 pub use translucent::{TranslucentMaps, TranslucentPipelines, record_color_pass, record_nearest_pass};
 pub use umbrage_core as core;
 

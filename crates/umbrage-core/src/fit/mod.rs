@@ -7,6 +7,7 @@ mod lispsm;
 mod mask;
 mod mask_options;
 mod perspective;
+mod places;
 mod point;
 mod seen;
 mod spot;
@@ -14,6 +15,7 @@ mod window;
 
 pub use mask::{MaskView, Region, fit_mask};
 pub use mask_options::{Frame, MaskError, MaskOptions, Ratios};
+pub use places::{PlacedViews, fit_places};
 
 use crate::bounds::Aabb;
 use crate::camera::Camera;

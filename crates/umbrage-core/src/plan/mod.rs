@@ -258,6 +258,15 @@ pub fn plan(settings: &Settings) -> Vec<Pass> {
     }
 }
 
+/// The planned passes that draw a map's casters: the one that draws the map, and the one that peels a layer off before it, where
+/// the map needs one. Nothing for techniques without maps.
+pub fn caster_passes(settings: &Settings) -> (Option<Pass>, Option<Pass>) {
+    let passes = plan(settings).into_iter().filter(|pass| pass.draws == Draws::Casters);
+    let (peels, maps): (Vec<_>, Vec<_>) =
+        passes.partition(|pass| matches!(pass.target, Target::Layer { .. }));
+    (maps.into_iter().next(), peels.into_iter().next())
+}
+
 /// The passes of a volume before surfaces are lit. Depth is drawn by whoever lights them: all else is counted over it.
 fn volume_passes(volume: &Volume, lighting: &Pass) -> Vec<Pass> {
     let depth =

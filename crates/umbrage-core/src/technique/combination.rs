@@ -96,7 +96,8 @@ impl Combination {
         }
     }
 
-    fn filter_module(&self) -> &'static str {
+    /// The WGSL module that filters.
+    pub fn filter_module(&self) -> &'static str {
         match self.filter {
             Filter::Nearest | Filter::MultiView if self.colors_light() => "filter/colored_nearest",
             Filter::Linear if self.colors_light() => "filter/colored_linear",

@@ -145,11 +145,25 @@ impl Settings {
     /// The value of a parameter: as set, or its default. `None` when this combination has no such parameter.
     pub fn value(&self, name: &str) -> Option<f32> {
         let param = self.method.param(name)?;
-        let set = self.set.iter().find(|(key, _)| *key == name).map(|(_, value)| *value);
-        Some(set.unwrap_or_else(|| match param.default {
+        Some(self.set_value(name).unwrap_or_else(|| match param.default {
             ParamDefault::Fixed(value) => value,
             ParamDefault::Derived { value, .. } => value(self.reach_texel()),
         }))
+    }
+
+    /// The value of a parameter where it was set; `None` where its default counts, or where there is none of that name.
+    pub fn set_value(&self, name: &str) -> Option<f32> {
+        self.set.iter().find(|(key, _)| *key == name).map(|(_, value)| *value)
+    }
+
+    /// The same with a parameter set, or set anew.
+    ///
+    /// # Errors
+    /// [`SettingError`] where this technique has no such parameter, or the number is out of its range.
+    pub fn with_value(mut self, name: &str, value: f32) -> Result<Self, SettingError> {
+        self.set.retain(|(key, _)| *key != name);
+        self.put(name, &value.to_string())?;
+        Ok(self)
     }
 
     /// Width and height of the map, texels; 0 without a map.
@@ -264,6 +278,16 @@ mod tests {
         assert_eq!(slope("linear", &[by_slope, ("slope_factor", "3.5")]), Some(3.5));
         assert_eq!(slope("matrix-bias", &[]), None);
         assert_eq!(slope("unshadowed", &[]), None);
+    }
+
+    #[test]
+    fn a_value_can_be_set_anew_and_is_refused_like_any_other() {
+        let settings = Settings::new("pcf", [("width", "3")]).expect("valid");
+        assert_eq!((settings.set_value("width"), settings.set_value("map_size")), (Some(3.0), None));
+        let wider = settings.with_value("width", 7.0).expect("in range");
+        assert_eq!(wider.value("width"), Some(7.0));
+        assert!(wider.clone().with_value("width", 2.5).expect_err("whole").to_string().contains("whole"));
+        assert!(wider.with_value("soft_px", 2.0).is_err());
     }
 
     #[test]
