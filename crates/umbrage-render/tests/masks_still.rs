@@ -1,12 +1,10 @@
 //! Masks that nothing changes cost nothing: no memory of the heap, no write, no pass.
-#![allow(unsafe_code, reason = "whoever counts what is put on the heap stands in its place")]
 
 mod common;
 
+use allocation_counter::measure;
 use common::gpu;
 use glam::{Mat4, UVec2, Vec3};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use umbrage_render::Gpu;
 use umbrage_render::umbrage::CasterPipelines;
 use umbrage_render::umbrage::caster::CasterVertices;
@@ -15,35 +13,9 @@ use umbrage_render::umbrage::core::technique::Settings;
 use umbrage_render::umbrage::core::{Aabb, Camera, DepthConvention, Light, LightKind};
 use umbrage_render::umbrage::mask::{Blocker, BlockerMasks, MaskPart, MasksError, Receiver};
 
-/// The system's heap, counted by thread: others of the test do what they like.
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-// SAFETY: everything is passed on to the system's heap as it is.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        _ = COUNT.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: as the caller promised.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promised.
-        unsafe { System.dealloc(at, layout) }
-    }
-}
-
-#[global_allocator]
-static HEAP: Counting = Counting;
-
 /// How often memory was asked for while something ran.
 fn asked(run: impl FnOnce()) -> u64 {
-    let before = COUNT.get();
-    run();
-    COUNT.get() - before
+    measure(run).count_total
 }
 
 /// Boxes of two parts under three lights.
