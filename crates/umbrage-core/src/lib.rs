@@ -16,6 +16,7 @@ pub mod layout;
 pub mod layout_mask;
 pub mod light;
 pub mod lookup;
+pub mod masks;
 pub mod plan;
 pub mod projection;
 pub mod split;

@@ -115,7 +115,7 @@ impl Renderer<'_> {
         }
         //    And each mask that does not.
         if let Some(masks) = &mut self.masks {
-            let done = masks.record(&mut encoder, &stale, (&queries, pass));
+            let done = masks.record(self.gpu, &mut encoder, self.options.reuse, (&queries, pass));
             pass += done.len() as u32;
             work.extend(done);
         }
