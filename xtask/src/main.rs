@@ -11,6 +11,7 @@ mod gallery;
 mod guide;
 mod links;
 mod machine;
+mod pages;
 mod picture;
 mod process;
 mod setup;
@@ -72,6 +73,12 @@ const TASKS: &[Task] = &[
         takes: "",
         summary: "measure the biases, and those of engines, and write docs/bias.md",
         run: bias::run,
+    },
+    Task {
+        name: "pages",
+        takes: "[--pictures [NAME]]",
+        summary: "write the made parts of docs/guide/ anew (--pictures: draw its pictures, too, or those named so)",
+        run: pages::run,
     },
     Task {
         name: "setup",
@@ -148,5 +155,6 @@ mod tests {
         assert!(refused(&["bench", "--jsno"]).contains("--json"));
         assert!(refused(&["bless", "a", "b"]).contains("one"));
         assert!(refused(&["gallery", "h99"]).contains("`h99`"));
+        assert!(refused(&["pages", "h99"]).contains("--pictures"));
     }
 }
