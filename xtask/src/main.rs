@@ -11,6 +11,8 @@ mod gallery;
 mod guide;
 mod links;
 mod machine;
+mod oldest;
+mod packages;
 mod pages;
 mod picture;
 mod process;
@@ -40,7 +42,7 @@ const TASKS: &[Task] = &[
     Task {
         name: "test",
         takes: "",
-        summary: "set the machine up, then format, lints, tests with goldens, documentation, papers",
+        summary: "set the machine up, then format, lints, tests with goldens, guide pages, oldest Rust, packages, papers",
         run: test::run,
     },
     Task {

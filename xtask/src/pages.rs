@@ -120,8 +120,10 @@ fn read(root: &Path) -> Result<Vec<Page>, Fault> {
     Ok(pages)
 }
 
+/// The names of all drawn pictures: none where nobody has drawn yet.
 fn files_of_pictures(root: &Path) -> Result<Vec<String>, Fault> {
-    names_in(&root.join(FOLDER).join("pictures"))
+    let folder = root.join(FOLDER).join("pictures");
+    if folder.is_dir() { names_in(&folder) } else { Ok(Vec::new()) }
 }
 
 fn names_in(folder: &Path) -> Result<Vec<String>, Fault> {
