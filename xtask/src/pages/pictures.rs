@@ -81,7 +81,7 @@ pub const PICTURES: &[Picture] = &[
     picture(
         "packed",
         "The three channels of the map: red counts 256 steps from near to far, green and blue divide each of them",
-        "builtin:torus --technique packed --view channels",
+        "builtin:contact --technique packed --view channels",
     ),
     picture(
         "packed-bands",
@@ -114,19 +114,19 @@ pub const PICTURES: &[Picture] = &[
     ),
     picture(
         "multi-view",
-        "`multi-view`, 64 places of a disc of 0.5 m: shadows are sharp where a pole stands and soften with the distance from it",
-        "builtin:columns --technique multi-view --set views=64 --set map_size=1024 --light \
-         disc=0.5,position=-3.4:5.2:4.4,target=0.2:0.9:-0.4,inner=19,outer=34",
+        "`multi-view`, 64 places of a disc of 0.5 m: shadows begin sharp where things touch and soften with the distance",
+        "builtin:contact --camera position=1.6:1.5:2.4,target=-0.2:0.25:0,fov=42 --technique multi-view --set views=64 --set \
+         map_size=1024 --light position=-3:4:2.5,target=0:0.3:0,disc=0.5,inner=30,outer=40",
     ),
     picture(
         "multi-view-few",
         "4 places: four hard shadows, one over the other",
-        "builtin:columns --technique multi-view --set views=4 --set map_size=1024 --light \
-         disc=0.5,position=-3.4:5.2:4.4,target=0.2:0.9:-0.4,inner=19,outer=34",
+        "builtin:contact --camera position=1.6:1.5:2.4,target=-0.2:0.25:0,fov=42 --technique multi-view --set views=4 --set \
+         map_size=1024 --light position=-3:4:2.5,target=0:0.3:0,disc=0.5,inner=30,outer=40",
     ),
     picture(
         "colored",
-        "`colored`: three panes between poles; opaque poles stay black, glass dims and tints",
+        "`colored`: three panes between poles; shadows of the poles are dark, glass dims and tints",
         "docs/guide/scenes/panes.obj --camera position=2.6:2.3:5.2,target=0:0.6:0.6,fov=42 --light \
          position=-1.5:5:-4,target=0:0.6:0.4,outer=45 --technique colored",
     ),
@@ -194,7 +194,7 @@ pub const PICTURES: &[Picture] = &[
     ),
     picture(
         "mask-self",
-        "`mask`: the pedestal's top throws no shadow on its own foot",
+        "`mask`: the pedestal's top throws no shadow on the shaft beneath it",
         "builtin:torus --camera position=2.6:1:2.2,target=0.7:0.45:0,fov=36 --technique mask",
     ),
     picture(
