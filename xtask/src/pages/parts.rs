@@ -105,12 +105,10 @@ impl Facts {
     /// What it is, where it was published, and what it is made of.
     fn facts(&self, technique: &Value) -> String {
         let word = |value: &Value| value.as_str().unwrap_or("").to_owned();
-        let mut text = format!(
-            "`--technique {}`: {}.\n\nPublished: {}.",
-            word(&technique["id"]),
-            word(&technique["summary"]),
-            published(technique)
-        );
+        let mut text = format!("`--technique {}`: {}.", word(&technique["id"]), word(&technique["summary"]));
+        if !technique["source"].is_null() {
+            let _ = write!(text, "\n\nPublished: {}.", published(technique));
+        }
         let Some(choices) = technique["choices"].as_object() else {
             return text + " It has no choices.";
         };
@@ -195,7 +193,7 @@ fn published(technique: &Value) -> String {
     let source = &technique["source"];
     match (source["paper"].as_str(), source["year"].as_u64()) {
         (Some(paper), Some(year)) => format!("{paper}, {year}"),
-        _ => "nowhere".to_owned(),
+        _ => String::new(),
     }
 }
 
