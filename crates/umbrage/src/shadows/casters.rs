@@ -33,6 +33,15 @@ pub(super) struct Caster {
     pub room_world: Aabb,
 }
 
+/// What receives shadows and casts none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Receiver {
+    pub bounds_world: Aabb,
+    /// What is drawn where receivers are drawn once more.
+    pub mesh: Option<Id>,
+    pub placed: GpuInstance,
+}
+
 /// What became of casters since the last frame.
 #[derive(Debug, Default)]
 pub(super) struct Changes {
@@ -65,7 +74,7 @@ impl Changes {
 #[derive(Debug)]
 pub(super) struct Casters {
     pub all: Store<Caster>,
-    pub receivers: Store<Aabb>,
+    pub receivers: Store<Receiver>,
     /// By mesh and winding, so that neighbours go into one draw.
     order: Vec<DefaultKey>,
     order_is_stale: bool,
@@ -176,25 +185,25 @@ impl Casters {
         Ok(removed)
     }
 
-    pub fn add_receiver(&mut self, bounds_world: Aabb) -> Id {
-        self.changes.room.push(bounds_world);
-        self.receivers.insert(bounds_world)
+    pub fn add_receiver(&mut self, receiver: Receiver) -> Id {
+        self.changes.room.push(receiver.bounds_world);
+        self.receivers.insert(receiver)
     }
 
-    pub fn place_receiver(&mut self, id: Id, bounds_world: Aabb) -> Result<(), ShadowsError> {
-        let receiver = self.receivers.get_mut(id)?;
-        if *receiver != bounds_world {
-            *receiver = bounds_world;
-            self.changes.room.push(bounds_world);
+    pub fn place_receiver(&mut self, id: Id, receiver: Receiver) -> Result<(), ShadowsError> {
+        let known = self.receivers.get_mut(id)?;
+        if *known != receiver {
+            *known = receiver;
+            self.changes.room.push(receiver.bounds_world);
             self.changes.loose = true;
         }
         Ok(())
     }
 
-    pub fn remove_receiver(&mut self, id: Id) -> Result<(), ShadowsError> {
-        self.receivers.remove(id)?;
+    pub fn remove_receiver(&mut self, id: Id) -> Result<Receiver, ShadowsError> {
+        let removed = self.receivers.remove(id)?;
         self.changes.loose = true;
-        Ok(())
+        Ok(removed)
     }
 
     /// Begins a frame: sorts what changed into what moves and what stands still. `false`: nothing changed at all. The cost is
@@ -296,7 +305,7 @@ impl Casters {
     pub fn boxes_world(&self, boxes: &mut Vec<Aabb>) {
         boxes.clear();
         boxes.extend(self.all.iter().map(|(_, caster)| caster.room_world));
-        boxes.extend(self.receivers.iter().map(|(_, bounds)| *bounds));
+        boxes.extend(self.receivers.iter().map(|(_, receiver)| receiver.bounds_world));
     }
 }
 

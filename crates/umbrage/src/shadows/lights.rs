@@ -6,7 +6,8 @@ use super::pool::Pool;
 use super::views::View;
 use crate::volume::VolumeSettings;
 use umbrage_core::fit::{Eye, Fallback, PlacedViews, fit_places};
-use umbrage_core::technique::{Family, Projection, Settings};
+use umbrage_core::technique::mask::Receivers;
+use umbrage_core::technique::{Family, Method, Projection, Settings};
 use umbrage_core::{Aabb, Light, LightError, LightKind};
 
 /// A light.
@@ -37,10 +38,21 @@ pub(super) struct Lit {
     pub volume: Option<VolumeSettings>,
     /// Its layer of V on the screen.
     pub screen: Option<u32>,
+    /// Its number among lights with masks, and its masks as the shader counts them.
+    pub mask_number: usize,
+    pub masks: u32,
+    /// Are its masks taken away from V on the screen?
+    pub is_subtractive: bool,
+    /// Are there more blockers than it may have masks?
+    pub is_crowded: bool,
     /// Casters that its family cannot draw under this light, by number.
     pub left_to_maps: Vec<usize>,
     /// Are there casters that maps draw for it?
     pub has_map_casters: bool,
+}
+
+fn is_subtractive(settings: &Settings) -> bool {
+    matches!(settings.method, Method::Mask(mask) if mask.receivers == Receivers::Subtractive)
 }
 
 /// Can a family draw a caster itself? Others are drawn into maps for it.
@@ -72,6 +84,10 @@ impl Lit {
             first_view: 0,
             volume: VolumeSettings::of(&settings),
             screen: None,
+            mask_number: 0,
+            masks: 0,
+            is_subtractive: is_subtractive(&settings),
+            is_crowded: false,
             left_to_maps: Vec::new(),
             has_map_casters: true,
             settings,
@@ -80,7 +96,12 @@ impl Lit {
 
     /// Is its V found on the screen?
     pub fn is_on_screen(&self) -> bool {
-        self.volume.is_some()
+        self.volume.is_some() || self.is_subtractive
+    }
+
+    /// Has it masks?
+    pub fn is_masked(&self) -> bool {
+        self.family() == Family::Mask
     }
 
     /// Do its maps follow the eye?

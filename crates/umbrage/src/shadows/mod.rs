@@ -14,6 +14,7 @@ mod foreign;
 mod frame;
 mod handles;
 mod lights;
+mod masks;
 mod meshes;
 mod options;
 mod pool;
@@ -42,6 +43,7 @@ use casting::Casting;
 use glam::{Mat4, Vec3};
 use handles::{Store, index};
 use lights::Lit;
+use masks::Masks;
 use meshes::Mesh;
 use pool::Pool;
 use screen::Screen;
@@ -79,6 +81,7 @@ pub struct Shadows {
     scratch: Scratch,
     /// V on the screen, where a technique finds it there.
     screen: Option<Screen>,
+    masks: Option<Masks>,
     /// Box around all that there is.
     scene_world: Aabb,
     frame: Option<Frame>,
@@ -123,12 +126,16 @@ impl Shadows {
         let (comparison, point) = (comparison_sampler(device), point_sampler(device));
         let layout = wgsl::layout(device, &declared);
         let screen = declared.screen.then(|| Screen::new(device, options.depth_stencil));
+        let cut_out_layout = CasterPipelines::cut_out_layout(device);
+        let masks = declared.mask_settings.as_ref();
+        let masks = masks.map(|settings| Masks::new(device, settings, &cut_out_layout)).transpose()?;
         let resources = wgsl::Resources {
             table: &table,
             pools: &pools,
             comparison: &comparison,
             point: &point,
             screen: screen.as_ref().map(|screen| screen.v.array()),
+            masks: masks.as_ref().map(|masks| masks.blockers.bindings()),
         };
         let group = wgsl::group(device, &layout, &declared, &resources);
         let view_layout = crate::caster::view_layout(device);
@@ -156,7 +163,7 @@ impl Shadows {
             meshes: Store::new("mesh", of),
             casters: Casters::new(of),
             lights: Store::new("light", of),
-            cut_out_layout: CasterPipelines::cut_out_layout(device),
+            cut_out_layout,
             moving_placed: Growing::new(device, "umbrage moving casters", wgpu::BufferUsages::VERTEX, 0),
             device: device.clone(),
             queue: queue.clone(),
@@ -175,6 +182,7 @@ impl Shadows {
             view_group,
             scratch: Scratch::default(),
             screen,
+            masks,
             scene_world: Aabb::EMPTY,
             frame: None,
             lights_changed: true,
@@ -343,10 +351,31 @@ impl Shadows {
     /// [`ShadowsError::Number`] for a box that is empty or not finite.
     pub fn add_receiver(&mut self, bounds_world: Aabb) -> Result<ReceiverHandle, ShadowsError> {
         check_box("receiver's box", &bounds_world)?;
-        Ok(ReceiverHandle(self.casters.add_receiver(bounds_world)))
+        let placed = GpuInstance::new(&Mat4::IDENTITY);
+        let receiver = casters::Receiver { bounds_world, mesh: None, placed };
+        Ok(ReceiverHandle(self.casters.add_receiver(receiver)))
     }
 
-    /// Moves a receiver.
+    /// The same with a mesh: subtractive masks draw receivers once more, and darken nothing that has none. It casts no shadow.
+    ///
+    /// # Errors
+    /// [`ShadowsError::Number`] for a transform that is not finite and affine, [`ShadowsError::Removed`],
+    /// [`ShadowsError::OfAnother`].
+    pub fn add_receiver_mesh(
+        &mut self,
+        mesh: MeshHandle,
+        world_from_object: Mat4,
+    ) -> Result<ReceiverHandle, ShadowsError> {
+        check_transform(&world_from_object)?;
+        let of_mesh = self.meshes.get_mut(mesh.0)?;
+        of_mesh.casters += 1;
+        let bounds_world = of_mesh.bounds_object.transformed(&world_from_object);
+        let placed = GpuInstance::new(&world_from_object);
+        let receiver = casters::Receiver { bounds_world, mesh: Some(mesh.0), placed };
+        Ok(ReceiverHandle(self.casters.add_receiver(receiver)))
+    }
+
+    /// Moves a receiver without a mesh.
     ///
     /// # Errors
     /// [`ShadowsError::Number`], [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
@@ -356,7 +385,31 @@ impl Shadows {
         bounds_world: Aabb,
     ) -> Result<(), ShadowsError> {
         check_box("receiver's box", &bounds_world)?;
-        self.casters.place_receiver(receiver.0, bounds_world)
+        let known = *self.casters.receivers.get(receiver.0)?;
+        self.casters.place_receiver(receiver.0, casters::Receiver { bounds_world, ..known })
+    }
+
+    /// Moves a receiver with a mesh.
+    ///
+    /// # Errors
+    /// [`ShadowsError::Number`], also for a receiver without mesh; [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
+    pub fn move_receiver_mesh(
+        &mut self,
+        receiver: ReceiverHandle,
+        world_from_object: Mat4,
+    ) -> Result<(), ShadowsError> {
+        check_transform(&world_from_object)?;
+        let known = *self.casters.receivers.get(receiver.0)?;
+        let Some(mesh) = known.mesh else {
+            return Err(ShadowsError::Number {
+                what: "receiver",
+                value: "without a mesh to move".into(),
+                allowed: "moved with `move_receiver`, which takes its box",
+            });
+        };
+        let bounds_world = self.meshes.get(mesh)?.bounds_object.transformed(&world_from_object);
+        let placed = GpuInstance::new(&world_from_object);
+        self.casters.place_receiver(receiver.0, casters::Receiver { bounds_world, placed, ..known })
     }
 
     /// Removes a receiver.
@@ -364,7 +417,12 @@ impl Shadows {
     /// # Errors
     /// [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
     pub fn remove_receiver(&mut self, receiver: ReceiverHandle) -> Result<(), ShadowsError> {
-        self.casters.remove_receiver(receiver.0)
+        let removed = self.casters.remove_receiver(receiver.0)?;
+        if let Some(mesh) = removed.mesh.and_then(|mesh| self.meshes.get_mut(mesh).ok()) {
+            mesh.casters -= 1;
+        }
+        self.is_prepared = false;
+        Ok(())
     }
 
     /// Adds a light with the first of the options' techniques.
@@ -466,6 +524,15 @@ impl Shadows {
         Ok(index(handle.0.key) as u32)
     }
 
+    /// The number of a caster in the shader, for `umbrage_visibility_on`: it stays the same while the caster is there.
+    ///
+    /// # Errors
+    /// [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
+    pub fn caster_index(&self, handle: CasterHandle) -> Result<u32, ShadowsError> {
+        self.casters.all.get(handle.0)?;
+        Ok(index(handle.0.key) as u32)
+    }
+
     /// A light as it was set.
     ///
     /// # Errors
@@ -507,7 +574,8 @@ impl Shadows {
         let peels = self.castings.iter().filter_map(|casting| casting.peel.as_ref());
         let peeled: u64 = peels.map(|(_, peel)| peel.memory_bytes()).sum();
         let screen = self.screen.as_ref().map_or(0, Screen::memory_bytes);
-        self.pools.iter().map(Pool::memory_bytes).sum::<u64>() + kept + peeled + screen
+        let masks = self.masks.as_ref().map_or(0, Masks::memory_bytes);
+        self.pools.iter().map(Pool::memory_bytes).sum::<u64>() + kept + peeled + screen + masks
     }
 }
 
@@ -515,9 +583,7 @@ impl Shadows {
 fn check_limits(device: &wgpu::Device, declared: &Declared) -> Result<(), ShadowsError> {
     let limits = device.limits();
     let bound = wgsl::bound(declared);
-    let is_buffer = |bound: &&wgsl::Bound| matches!(bound, wgsl::Bound::Lights | wgsl::Bound::Views);
-    let is_sampler = |bound: &&wgsl::Bound| matches!(bound, wgsl::Bound::Comparison | wgsl::Bound::Point);
-    let textures = bound.iter().filter(|b| !is_buffer(b) && !is_sampler(b)).count() as u64;
+    let textures = bound.iter().filter(|bound| bound.is_texture()).count() as u64;
     let has = u64::from(limits.max_sampled_textures_per_shader_stage);
     if textures > has {
         return Err(ShadowsError::Limit {

@@ -78,6 +78,8 @@ impl Shadows {
         if changed || eye_moved {
             self.tell_screen(frame)?;
         }
+        // Masks may have left casters to maps.
+        let changed = changed || self.lights.iter().any(|(_, lit)| lit.fit_is_stale);
         if changed {
             self.fit_lights(frame, eye_moved, &mut done)?;
             self.list_views(&mut done);
@@ -94,19 +96,27 @@ impl Shadows {
 
     /// Says to volumes and masks what there is, and makes room for V on the screen.
     fn tell_screen(&mut self, frame: &Frame) -> Result<(), ShadowsError> {
-        let Some(screen) = &mut self.screen else { return Ok(()) };
-        let mut count = 0;
-        for (_, lit) in self.lights.iter_mut() {
-            lit.screen = lit.is_on_screen().then_some(count);
-            count += u32::from(lit.screen.is_some());
-        }
-        self.group_is_stale |= screen.make_room(&self.device, frame, count)?;
         if self.casters.has_changed() {
             self.casters.boxes_world(&mut self.scratch.boxes);
             self.scene_world = self.scratch.boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         }
         let gpu = (&self.device, &self.queue);
-        screen.tell(gpu, frame, &self.lights, &self.meshes, &self.casters, &self.scene_world)
+        if let Some(screen) = &mut self.screen {
+            let mut count = 0;
+            for (_, lit) in self.lights.iter_mut() {
+                lit.screen = lit.is_on_screen().then_some(count);
+                count += u32::from(lit.screen.is_some());
+            }
+            self.group_is_stale |= screen.make_room(&self.device, frame, count)?;
+            screen.tell(gpu, frame, &self.lights, &self.meshes, &self.casters, &self.scene_world)?;
+        }
+        if let Some(masks) = &mut self.masks {
+            let (layout, scene) = (&self.cut_out_layout, &self.scene_world);
+            let format = self.screen.as_ref().map(|screen| screen.depth_format);
+            let (lights, meshes, casters) = (&mut self.lights, &self.meshes, &self.casters);
+            self.group_is_stale |= masks.tell(gpu, layout, frame, format, lights, meshes, casters, scene)?;
+        }
+        Ok(())
     }
 
     fn stale_views(&self) -> u64 {
@@ -196,6 +206,7 @@ impl Shadows {
                 comparison: &self.comparison,
                 point: &self.point,
                 screen: self.screen.as_ref().map(|screen| screen.v.array()),
+                masks: self.masks.as_ref().map(|masks| masks.blockers.bindings()),
             };
             self.group = group(&self.device, &self.layout, &self.declared, &resources);
         }
@@ -308,7 +319,7 @@ fn on_gpu(lit: &Lit) -> GpuLit {
         first_view: lit.first_view,
         places: lit.places,
         tiles: if lit.light.kind == LightKind::Point { 6 } else { 1 },
-        masks: 0,
+        masks: lit.masks,
         screen: lit.screen.map_or(0, |layer| layer + 1),
         lit_outside: is(lit.light.kind == LightKind::Directional || lit.places > 1),
         pad: 0,

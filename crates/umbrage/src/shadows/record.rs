@@ -23,9 +23,11 @@ pub struct Recorded {
     pub maps: u64,
     /// Of those, maps for which what stands still was copied, not drawn.
     pub copied: u64,
-    /// Draw calls, without the caller's own.
+    /// Masks that were drawn.
+    pub masks: u64,
+    /// Draw calls into maps, without the caller's own.
     pub draws: u64,
-    /// Triangles, without the caller's own.
+    /// Triangles drawn into maps, without the caller's own.
     pub triangles: u64,
 }
 
@@ -87,6 +89,9 @@ impl Shadows {
                 recorder.record(encoder, view, &mut own, &mut done);
             }
         }
+        if let Some(masks) = &mut self.masks {
+            done.masks = masks.record(encoder, &self.meshes);
+        }
         Ok(done)
     }
 
@@ -106,7 +111,7 @@ impl Shadows {
         if !self.is_prepared {
             return Err(ShadowsError::NotPrepared { call: "record_screen" });
         }
-        let Self { device, lights, screen, .. } = self;
+        let Self { device, lights, meshes, screen, masks, .. } = self;
         let Some(screen) = screen.as_mut().filter(|screen| screen.count > 0) else { return Ok(()) };
         let blurs = |lit: &Lit| lit.volume.is_some_and(|volume| volume.choices.soften == Soften::Blur);
         screen.check(device, depth_stencil, lights.iter().any(|(_, lit)| blurs(lit)))?;
@@ -115,6 +120,12 @@ impl Shadows {
             let layer = |number: usize| lights.iter().find(|(key, _)| index(*key) == number)?.1.screen;
             let v = &screen.v;
             volumes.record(encoder, depth_stencil, read, |number| v.layer(layer(number)?), &mut ());
+        }
+        for (_, lit) in lights.iter().filter(|(_, lit)| lit.is_subtractive) {
+            let v = lit.screen.and_then(|layer| screen.v.layer(layer));
+            if let (Some(masks), Some(v)) = (masks.as_ref(), v) {
+                masks.record_subtract(encoder, depth_stencil, v, lit.mask_number, meshes);
+            }
         }
         Ok(())
     }
