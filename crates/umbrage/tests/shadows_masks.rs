@@ -80,6 +80,40 @@ fn what_a_light_cannot_mask_is_left_to_its_map() {
     assert_eq!(shadows.prepare(&frame()).expect("prepared").views, 0);
 }
 
+/// The visibility buffer says what inline lookup says, of every family; and nothing of what is not lit.
+#[test]
+fn the_visibility_buffer_says_the_same() {
+    let Some(gpu) = gpu() else { return };
+    let boxes = boxes(10, 8);
+    let points = seen_points(&points(80), &boxes);
+    let (mut shadows, _) = made(&gpu, &boxes);
+    let probe = Probe::new(&gpu, &shadows);
+    let depth = Depth::new(&gpu, FORMAT, &boxes);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let early = shadows.record_visibility(&mut encoder, &depth.view).expect_err("not prepared").to_string();
+    assert!(early.contains("`record_visibility`"), "{early}");
+    assert!(shadows.visibility().is_none());
+    let lights = [sun(), spot(), Light { position_world: Vec3::new(0.3, 6.5, -0.2), ..lamp() }, sun()];
+    let handles = lights.map(|light| shadows.add_light(light).expect("a light"));
+    for (handle, family) in handles.iter().zip(["mask", "pcf", "volume", "mask-subtractive"]) {
+        shadows.set_technique_named(*handle, family).expect("declared");
+    }
+    for handle in handles {
+        let number = shadows.light_index(handle).expect("a number");
+        let (buffer, inline) = probe.shoot_both(&gpu, &mut shadows, &depth, number, &points);
+        let differ = buffer.iter().zip(&inline).filter(|(a, b)| (**a - b.w).abs() > 0.1).count();
+        let dark = inline.iter().filter(|v| v.w < 0.5).count();
+        assert!(dark > 100, "light {number}: {dark} dark");
+        assert!(differ <= points.len() / 100, "light {number}: {differ} of {} differ", points.len());
+    }
+    let (first, second) =
+        (shadows.light_index(handles[0]).expect("0"), shadows.light_index(handles[1]).expect("1"));
+    let (a, _) = probe.shoot_both(&gpu, &mut shadows, &depth, first, &points);
+    let (b, _) = probe.shoot_both(&gpu, &mut shadows, &depth, second, &points);
+    let differ = a.iter().zip(&b).filter(|(a, b)| (*a - *b).abs() > 0.1).count();
+    assert!(differ > points.len() / 20, "each light has a layer of its own: {differ}");
+}
+
 #[test]
 fn masks_of_another_size_are_refused() {
     let Some(gpu) = gpu() else { return };

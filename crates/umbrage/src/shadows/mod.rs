@@ -24,6 +24,7 @@ mod screen;
 mod table;
 mod variants;
 mod views;
+mod visibility;
 mod wgsl;
 
 pub use error::ShadowsError;
@@ -53,6 +54,7 @@ use table::{GpuLit, Table};
 use umbrage_core::technique::Settings;
 use umbrage_core::{Aabb, Light};
 use variants::Declared;
+use visibility::Visibility;
 
 /// The shadows of a scene: see the [module](self).
 #[derive(Debug)]
@@ -82,6 +84,7 @@ pub struct Shadows {
     /// V on the screen, where a technique finds it there.
     screen: Option<Screen>,
     masks: Option<Masks>,
+    visibility: Option<Visibility>,
     /// Box around all that there is.
     scene_world: Aabb,
     frame: Option<Frame>,
@@ -183,6 +186,7 @@ impl Shadows {
             scratch: Scratch::default(),
             screen,
             masks,
+            visibility: None,
             scene_world: Aabb::EMPTY,
             frame: None,
             lights_changed: true,

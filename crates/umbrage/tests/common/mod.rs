@@ -436,6 +436,44 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         self.ask(gpu, encoder, shadows, light, points)
     }
 
+    /// What the visibility buffer says at the same points, and what inline lookup does.
+    pub fn shoot_both(
+        &self,
+        gpu: &Gpu,
+        shadows: &mut Shadows,
+        depth: &Depth,
+        light: u32,
+        points: &[Vec3],
+    ) -> (Vec<f32>, Vec<Vec4>) {
+        let inline = self.shoot_over(gpu, shadows, depth, light, points);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        shadows.record_visibility(&mut encoder, &depth.view).expect("recorded");
+        let texture = shadows.visibility().expect("V").texture().clone();
+        let texel_bytes = texture.format().block_copy_size(None).expect("plain");
+        let row = (texture.width() * texel_bytes).next_multiple_of(256);
+        let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row * texture.height()),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut from = texture.as_image_copy();
+        from.origin.z = light;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+        encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer: &read, layout }, size);
+        gpu.queue.submit([encoder.finish()]);
+        read.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("polled");
+        let bytes = read.get_mapped_range(..).expect("a range");
+        let at = |p: &Vec3| {
+            let pixel = pixel_of(*p).as_uvec2();
+            f32::from(bytes[(pixel.y * row + pixel.x * texel_bytes) as usize]) / 255.0
+        };
+        (points.iter().map(at).collect(), inline)
+    }
+
     /// Prepares, records, and asks.
     pub fn shoot(&self, gpu: &Gpu, shadows: &mut Shadows, light: u32, points: &[Vec3]) -> Vec<Vec4> {
         shadows.prepare(&frame()).expect("prepared");
