@@ -106,8 +106,8 @@ impl Masks {
         if count > 0 {
             self.list_parts(device, cut_out_layout, meshes, casters);
         }
-        let mut number = 0;
-        for (_, lit) in lights.iter_mut().filter(|(_, lit)| lit.is_masked()) {
+        let masked = lights.iter_mut().filter(|(_, lit)| lit.is_masked());
+        for (number, (_, lit)) in masked.enumerate() {
             let blockers = self
                 .parts
                 .iter()
@@ -126,7 +126,6 @@ impl Masks {
             if !is_crowded && self.left != lit.left_to_maps {
                 leave(lit, &self.left);
             }
-            number += 1;
         }
         self.blockers.finish(device, queue)?;
         for (_, lit) in lights.iter_mut().filter(|(_, lit)| lit.is_masked()) {
@@ -136,10 +135,9 @@ impl Masks {
             let range = self.blockers.of_light(lit.mask_number);
             lit.masks = if lit.is_subtractive { 0 } else { mask_range(&range) };
         }
-        if lights.iter().any(|(_, lit)| lit.is_subtractive) {
-            if let Some(format) = depth_format {
-                self.tell_darkened((device, queue), frame, format, meshes, casters);
-            }
+        let format = depth_format.filter(|_| lights.iter().any(|(_, lit)| lit.is_subtractive));
+        if let Some(format) = format {
+            self.tell_darkened((device, queue), frame, format, meshes, casters);
         }
         Ok(is_other || changes != self.blockers.changes())
     }

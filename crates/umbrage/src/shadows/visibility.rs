@@ -101,6 +101,11 @@ impl Visibility {
         Self { pipeline, layout, seen, written: None, group: None, layers: None }
     }
 
+    /// Memory, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        self.layers.as_ref().map_or(0, |(layers, _)| layers.memory_bytes())
+    }
+
     /// Takes a depth to read, and makes room for V; no cost while both stay as they are.
     fn take(
         &mut self,
