@@ -4,6 +4,7 @@ mod common;
 
 use common::*;
 use glam::Vec3;
+use umbrage::core::technique::Settings;
 use umbrage::{CasterMesh, Shadows, ShadowsError, ShadowsOptions};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
@@ -97,6 +98,39 @@ fn casters_without_a_shape_are_left_to_a_map() {
     assert_eq!(shadows.prepare(&frame()).expect("prepared").views, 1);
     let (sure, wrong) = judge(&seen, &points, &sun(), &boxes, 0.12);
     assert!(sure > 2000 && wrong <= sure / 200, "{wrong} of {sure}");
+}
+
+/// What goes wrong though nothing is misused is told, as long as it does.
+#[test]
+fn volumes_that_the_far_plane_cuts_are_told() {
+    let Some(gpu) = gpu() else { return };
+    let options = ShadowsOptions::with(["volume"]).expect("options").depth_stencil(FORMAT);
+    let mut shadows = Shadows::new(&gpu.device, &gpu.queue, options).expect("shadows");
+    let mesh = add_cube(&gpu, &mut shadows);
+    let (at, half) = boxes(1, 3)[0];
+    shadows.add_caster(mesh, placed(at, half)).expect("a caster");
+    let light = shadows.add_light(sun()).expect("a light");
+    shadows.prepare(&frame()).expect("prepared");
+    assert_eq!(shadows.warnings(), []);
+    let far =
+        Settings::new("volume", [("counting", "depth-fail"), ("extrude_m", "10000")]).expect("settings");
+    shadows.set_technique(light, &far).expect("choices of volumes are free");
+    shadows.prepare(&frame()).expect("prepared");
+    let told = shadows.warnings()[0].to_string();
+    assert!(
+        told.contains("light 0") && told.contains("far plane") && told.contains("DEPTH_CLIP_CONTROL"),
+        "{told}"
+    );
+    shadows.set_technique_named(light, "volume").expect("declared");
+    shadows.prepare(&frame()).expect("prepared");
+    assert_eq!(shadows.warnings(), []);
+}
+
+/// Lights and casters may be told from any thread.
+#[test]
+fn shadows_go_from_thread_to_thread() {
+    fn goes<T: Send + Sync>() {}
+    goes::<Shadows>();
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::views::Drawn;
 use super::wgsl::{Resources, group};
 use super::{Frame, Shadows, ShadowsError, options};
 use crate::caster::GpuCasterView;
+use crate::volume::VolumeProblem;
 use umbrage_core::fit::{Eye, Fallback, FitError};
 use umbrage_core::layout::GpuView;
 use umbrage_core::volume::light_point_world;
@@ -43,6 +44,9 @@ pub enum ShadowsWarning {
         /// Why.
         why: Fallback,
     },
+    /// Volumes that could not be made as asked for; its light is a [`Shadows::light_index`].
+    #[error(transparent)]
+    Volume(VolumeProblem),
     /// A light has no map.
     #[error("a light throws no shadow: {why}")]
     NoMap {
@@ -306,6 +310,9 @@ impl Shadows {
             self.warnings.extend(lit.fallback.map(|why| ShadowsWarning::Fallback { light, why }));
             self.warnings.extend(lit.failure.clone().map(|why| ShadowsWarning::NoMap { light, why }));
         }
+        let volumes = self.screen.as_ref().and_then(|screen| screen.volumes.as_ref());
+        let problems = volumes.map_or(&[][..], |volumes| volumes.problems());
+        self.warnings.extend(problems.iter().copied().map(ShadowsWarning::Volume));
     }
 }
 
