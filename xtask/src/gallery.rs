@@ -254,7 +254,8 @@ fn draw(root: &Path, picture: &Picture, found: &mut Found) -> Done {
     pack(&root.join(picture.path()))
 }
 
-fn pack(path: &Path) -> Done {
+/// Packs a picture that stays in git, and weighs it.
+pub fn pack(path: &Path) -> Done {
     picture::repack(path)?;
     let bytes = std::fs::metadata(path).map_err(|e| failed(format!("{}: {e}", path.display())))?.len();
     if bytes > LIMIT_BYTES {

@@ -101,6 +101,7 @@ pub fn run(_: &[String]) -> Done {
     let text = page(&measured, &machine)?;
     process::write(&process::root().join("docs/guide.md"), text)?;
     println!("The guide is written: docs/guide.md. Read what changed before you commit it.");
+    println!("The pages of docs/guide/ quote it: `cargo xtask pages` brings them up to date.");
     Ok(())
 }
 

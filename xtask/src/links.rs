@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 /// Folders that hold no papers of ours.
 const NOT_OURS: [&str; 4] = ["target", "shared", "node_modules", "third_party"];
 
-/// Every relative link of every Markdown file leads to something in the checkout.
+/// Every relative link of every Markdown file leads to something in the checkout, and its anchor to a heading there.
 pub fn check() -> Done {
     let root = process::root();
     let mut papers = Vec::new();
@@ -21,15 +21,65 @@ pub fn check() -> Done {
         let folder = paper.parent().unwrap_or(&root);
         for (line, link) in links(&text) {
             count += 1;
-            let leads_to = resolve(&root, folder, &link);
-            if !leads_to.is_some_and(|path| path.exists()) {
+            lead(&root, folder, paper, &link).map_err(|why| {
                 let paper = paper.strip_prefix(&root).unwrap_or(paper).display();
-                return Err(failed(format!("{paper}:{line}: `{link}` leads to nothing in the checkout")));
-            }
+                failed(format!("{paper}:{line}: `{link}` {why}"))
+            })?;
         }
     }
     println!("{count} relative links in {} papers lead somewhere", papers.len());
     Ok(())
+}
+
+/// Does a link of a paper lead to a file, and its anchor to a place in it? If not, why.
+fn lead(root: &Path, folder: &Path, paper: &Path, link: &str) -> Result<(), String> {
+    let (file, anchor) = link.split_once('#').map_or((link, None), |(file, anchor)| (file, Some(anchor)));
+    let path = if file.is_empty() { Some(paper.to_path_buf()) } else { resolve(root, folder, file) };
+    let path = path.filter(|path| path.exists()).ok_or("leads to nothing in the checkout")?;
+    let Some(anchor) = anchor else { return Ok(()) };
+    let read = || std::fs::read_to_string(&path).map_err(|e| format!("cannot be followed: {e}"));
+    let is_there = match path.extension().and_then(|ending| ending.to_str()) {
+        Some("md") => anchors(&read()?).iter().any(|known| known == anchor),
+        Some("html") => read()?.contains(&format!("id=\"{anchor}\"")),
+        // Lines of source, which only the web's view of it has.
+        _ => true,
+    };
+    if is_there {
+        Ok(())
+    } else {
+        Err(format!("leads to no heading: nothing there has the anchor `{anchor}`"))
+    }
+}
+
+/// The anchors of a paper's headings, as GitHub makes them: small letters, blanks to hyphens, no other signs, and a number
+/// after a name that was there before.
+fn anchors(text: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    let mut in_code = false;
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            in_code = !in_code;
+        }
+        let title = line.trim_start_matches('#');
+        let depth = line.len() - title.len();
+        if in_code || !(1..=6).contains(&depth) || !title.starts_with(' ') {
+            continue;
+        }
+        let kept = without_targets(title.trim()).to_lowercase();
+        let kept = kept.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        let name: String = kept.map(|c| if c == ' ' { '-' } else { c }).collect();
+        let again = (1..).map(|i| format!("{name}-{i}"));
+        let free = std::iter::once(name.clone()).chain(again).find(|name| !found.contains(name));
+        found.extend(free);
+    }
+    found
+}
+
+/// The title without what its links lead to: `[a](b.md)` is a.
+fn without_targets(title: &str) -> String {
+    let mut parts = title.split("](");
+    let first = parts.next().unwrap_or("").to_owned();
+    parts.fold(first, |text, part| text + part.split_once(')').map_or("", |(_, rest)| rest))
 }
 
 fn find_papers(folder: &Path, papers: &mut Vec<PathBuf>) -> std::io::Result<()> {
@@ -64,7 +114,7 @@ fn resolve(root: &Path, folder: &Path, link: &str) -> Option<PathBuf> {
     path.starts_with(root).then_some(path)
 }
 
-/// Line number and target of every relative link and picture, without code and without anchors.
+/// Line number and target of every relative link and picture, without code.
 fn links(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let mut in_code = false;
@@ -88,12 +138,11 @@ fn links(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// The file that a target names; nothing for other places of the net and of the same page.
+/// The file that a target names, with its anchor; nothing for other places of the net.
 fn relative(target: &str) -> Option<String> {
     let target = target.split_whitespace().next()?.trim_matches(['<', '>']);
     let elsewhere = target.contains("://") || target.starts_with("mailto:");
-    let file = target.split('#').next().unwrap_or("");
-    (!elsewhere && !file.is_empty()).then(|| file.to_owned())
+    (!elsewhere && !target.is_empty() && target != "#").then(|| target.to_owned())
 }
 
 /// The line without what stands between back ticks.
@@ -110,8 +159,49 @@ mod tests {
         let text = "[a](docs/a.md#part) and ![b](b.png \"title\") `[c](c.md)`\n\
                     ```\n[d](d.md)\n```\n<img src=\"e.png\">, [web](https://x.org/f.md), [here](#g)\n[ref]: h.md";
         let found: Vec<_> = links(text);
-        let expected = [(1, "docs/a.md"), (1, "b.png"), (5, "e.png"), (6, "h.md")];
+        let expected = [(1, "docs/a.md#part"), (1, "b.png"), (5, "#g"), (5, "e.png"), (6, "h.md")];
         assert_eq!(found, expected.map(|(line, link)| (line, link.to_owned())));
+    }
+
+    #[test]
+    fn anchors_are_those_of_github() {
+        let text = "# `pcf`: all comparisons\n## I8, B4 Maps that follow\n```sh\n# no heading\n```\n#tag\n\
+                    ## Scale and bias, depth\n## Scale and bias, depth\n### [A link](b.md) to z_n + 1.5\n";
+        let expected = [
+            "pcf-all-comparisons",
+            "i8-b4-maps-that-follow",
+            "scale-and-bias-depth",
+            "scale-and-bias-depth-1",
+            "a-link-to-z_n--15",
+        ];
+        assert_eq!(anchors(text), expected);
+    }
+
+    #[test]
+    fn a_broken_link_picture_or_anchor_is_seen() {
+        let root = std::env::temp_dir().join(format!("xtask-links-{}", std::process::id()));
+        let guide = root.join("docs/guide");
+        std::fs::create_dir_all(guide.join("pictures")).unwrap();
+        std::fs::write(guide.join("a.md"), "# A\n\n## Where it fails\n").unwrap();
+        std::fs::write(guide.join("page.html"), "<p id=\"said\">").unwrap();
+        std::fs::write(guide.join("pictures/a.png"), "").unwrap();
+        std::fs::write(root.join("README.md"), "# Read\n").unwrap();
+        let lead = |link: &str| lead(&root, &guide, &guide.join("a.md"), link);
+        let good =
+            ["a.md", "a.md#where-it-fails", "#a", "../../README.md#read", "page.html#said", "pictures/a.png"];
+        let bad = [
+            "b.md",
+            "a.md#where",
+            "#b",
+            "../../README.md#a",
+            "page.html#text",
+            "pictures/b.png",
+            "../../../x.md",
+        ];
+        let (good, bad) = (good.map(lead), bad.map(lead));
+        std::fs::remove_dir_all(&root).unwrap();
+        assert!(good.iter().all(Result::is_ok), "{good:?}");
+        assert!(bad.iter().all(Result::is_err), "{bad:?}");
     }
 
     #[test]

@@ -11,6 +11,9 @@ mod gallery;
 mod guide;
 mod links;
 mod machine;
+mod oldest;
+mod packages;
+mod pages;
 mod picture;
 mod process;
 mod setup;
@@ -39,7 +42,7 @@ const TASKS: &[Task] = &[
     Task {
         name: "test",
         takes: "",
-        summary: "set the machine up, then format, lints, tests with goldens, documentation, papers",
+        summary: "set the machine up, then format, lints, tests with goldens, guide pages, oldest Rust, packages, papers",
         run: test::run,
     },
     Task {
@@ -72,6 +75,12 @@ const TASKS: &[Task] = &[
         takes: "",
         summary: "measure the biases, and those of engines, and write docs/bias.md",
         run: bias::run,
+    },
+    Task {
+        name: "pages",
+        takes: "[--pictures [NAME]]",
+        summary: "write the made parts of docs/guide/ anew (--pictures: draw its pictures, too, or those named so)",
+        run: pages::run,
     },
     Task {
         name: "setup",
@@ -148,5 +157,6 @@ mod tests {
         assert!(refused(&["bench", "--jsno"]).contains("--json"));
         assert!(refused(&["bless", "a", "b"]).contains("one"));
         assert!(refused(&["gallery", "h99"]).contains("`h99`"));
+        assert!(refused(&["pages", "h99"]).contains("--pictures"));
     }
 }

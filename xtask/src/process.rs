@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::Mutex;
 
 /// How a command ends.
 pub type Done = Result<(), Fault>;
@@ -19,6 +20,21 @@ pub enum Fault {
 /// [`Fault::Failed`] with these words.
 pub fn failed(message: impl Into<String>) -> Fault {
     Fault::Failed(message.into())
+}
+
+/// What was left out so far.
+static SKIPPED: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Says loudly that something is left out, now and at the end.
+pub fn skip(what: impl Into<String>) {
+    let what = what.into();
+    eprintln!("SKIPPED: {what}");
+    SKIPPED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(what);
+}
+
+/// All that was left out.
+pub fn skipped() -> Vec<String> {
+    SKIPPED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
 }
 
 /// The top folder of the checkout.

@@ -2,7 +2,7 @@
 
 use crate::process::{self, Done, Fault, failed};
 use crate::setup::{self, Need};
-use crate::{checks, links};
+use crate::{checks, links, oldest, packages, pages};
 use std::time::{Duration, Instant};
 
 /// One step, cheap ones first.
@@ -39,6 +39,11 @@ const STEPS: &[Step] = &[
         advice: "what needs a GPU belongs into the crate `umbrage` or above it",
     },
     Step {
+        name: "packages",
+        run: packages::check,
+        advice: "mend what is named above in crates/*/Cargo.toml",
+    },
+    Step {
         name: "lints",
         run: || {
             process::run(&mut process::cargo([
@@ -56,6 +61,16 @@ const STEPS: &[Step] = &[
         name: "tests",
         run: tests,
         advice: "a golden that changed on purpose: `cargo xtask bless`, then look at the pictures",
+    },
+    Step {
+        name: "guide pages",
+        run: pages::check,
+        advice: "`cargo xtask pages` makes what follows from the table anew; docs/guide/adding.md says what a page has",
+    },
+    Step {
+        name: "oldest Rust",
+        run: oldest::check,
+        advice: "write it so that the oldest Rust understands it, or raise rust-version where README and CHANGELOG say it",
     },
     Step {
         name: "documentation",
@@ -82,6 +97,9 @@ pub fn run(_: &[String]) -> Done {
         }
     }
     print_times(&times, "passed");
+    for what in process::skipped() {
+        println!("SKIPPED: {what}");
+    }
     if HAS_GOLDENS {
         println!("All {} steps passed.", STEPS.len());
     } else {

@@ -14,7 +14,8 @@ pub fn width() -> usize {
 pub fn hang(head: &str, indent: usize, text: &str, width: usize) -> String {
     let mut lines = Vec::new();
     let mut line = format!("{head:<indent$}");
-    if line.chars().count() > indent {
+    // A head without a blank behind it has a line of its own.
+    if !head.is_empty() && head.chars().count() >= indent {
         lines.push(line.trim_end().to_owned());
         line = " ".repeat(indent);
     }

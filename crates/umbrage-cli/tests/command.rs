@@ -456,7 +456,10 @@ fn tables_plans_and_shaders_are_printed() {
         text(&output.stdout)
     };
     let plan = out(&["passes", "linear", "--set", "map_size=512"]);
-    assert!(plan.contains("shadow-map (one for each shadowed light)") && plan.contains("512x512"), "{plan}");
+    assert!(
+        plan.contains("shadow-map (one for each view of a shadowed light)") && plan.contains("512x512"),
+        "{plan}"
+    );
     assert!(plan.contains("polygon offset slope") && plan.contains("\nlighting"), "{plan}");
     let plan: serde_json::Value =
         serde_json::from_str(&out(&["passes", "linear", "--json"])).expect("one object");

@@ -16,11 +16,13 @@ pub mod layout;
 pub mod layout_mask;
 pub mod light;
 pub mod lookup;
+pub mod masks;
 pub mod plan;
 pub mod projection;
 pub mod split;
 pub mod technique;
 pub mod volume;
+pub mod volume_cut;
 pub mod wgsl;
 
 pub use bounds::Aabb;

@@ -161,6 +161,7 @@ impl Default for Light {
 
 /// Why a light cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LightError {
     /// A number that is infinite, not a number, or outside its range.
     #[error("the light's {what} is {value}; it must be {allowed}")]

@@ -12,7 +12,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 /// Which corner of the map is (0, 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureOrigin {
-    /// WebGPU, Direct3D, Metal, Vulkan: rows run down, clip-space y runs up.
+    /// WebGPU, Direct3D, Metal, and Vulkan where its viewport has a negative height: rows run down, clip-space y runs up.
     TopLeft,
     /// OpenGL: both run up.
     BottomLeft,

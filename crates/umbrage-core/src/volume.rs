@@ -1,7 +1,7 @@
 //! Where a shadow volume can be seen, and where the eye may be in it.
 
 use crate::bounds::Aabb;
-use crate::frustum::Frustum;
+use crate::frustum::{Frustum, cone_may_see};
 use crate::light::{Light, LightKind};
 use glam::{DMat3, DVec3, Mat4, UVec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -35,6 +35,21 @@ pub fn is_mirrored(world_from_object: &Mat4) -> bool {
 
 fn columns(m: &Mat4) -> [DVec3; 4] {
     [m.x_axis, m.y_axis, m.z_axis, m.w_axis].map(|column| column.xyz().as_dvec3())
+}
+
+/// May a light reach a box: is that within its range, and in its cone? Never false for one that it does.
+pub fn light_may_reach(light: &Light, bounds_world: &Aabb) -> bool {
+    let is_in_range = light.range_m.filter(|_| light.kind != LightKind::Directional).is_none_or(|range_m| {
+        let nearest = light.position_world.clamp(bounds_world.min, bounds_world.max);
+        nearest.distance(light.position_world) <= range_m
+    });
+    let is_in_cone = match light.kind {
+        LightKind::Spot { outer_rad, .. } => {
+            cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds_world)
+        }
+        _ => true,
+    };
+    is_in_range && is_in_cone
 }
 
 /// May a light be inside of a caster, or on it? Then its closed parts have to cast from both sides.
@@ -164,16 +179,17 @@ pub fn lit_pixels(light: &Light, scene_world: &Aabb, clip_from_world: Mat4, size
         scene_world.corners().iter().map(|p| p.distance(place)).fold(0.0, f32::max).min(reach_m) * 1.001;
     let ball = Aabb { min: place - reach_m.min(1e30), max: place + reach_m.min(1e30) };
     let met = Aabb { min: scene_world.min.max(ball.min), max: scene_world.max.min(ball.max) };
-    let points: Vec<Vec3> = match light.kind {
+    let points = match light.kind {
         LightKind::Directional => return Some(whole),
         LightKind::Point if reach_m.is_infinite() => return Some(whole),
         _ if met.is_empty() => return None,
-        LightKind::Point => met.corners().to_vec(),
+        LightKind::Point => met.corners(),
         LightKind::Spot { outer_rad, .. } => {
             let rotation = light.world_from_light_rotation();
             let (depth, wide) = (farthest_m, farthest_m * outer_rad.min(1.5).tan() * 1.001);
             let corner = |x: f32, y: f32| place + rotation * Vec3::new(x * wide, y * wide, -depth);
-            vec![place, corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]
+            let ends = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            [place, place, place, place, ends[0], ends[1], ends[2], ends[3]]
         }
     };
     let (mut least, mut most) = (glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY);

@@ -35,5 +35,6 @@ struct UmbrageView {
 }
 
 // Which way stored depth grows: 1 away from the light, -1 towards it (reversed). `umbrage_core::DEPTH` says the same, and
-// a test compares them; in a renderer of your own, this is the line to change.
+// a test compares them; in a renderer of your own whose depth is in a depth texture, this is the line to change. `share.wgsl`, which
+// maps with distance in colours need, is written for reversed depth.
 const UMBRAGE_AWAY = -1.0;

@@ -3,15 +3,18 @@
 use crate::geometry::Geometry;
 use crate::layout::GpuInstance;
 use crate::materials::{MaterialEntry, Variant};
-use crate::shadowed::{ReceiverBatch, Rect, Shadow};
-use glam::{Mat4, UVec2, Vec3, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use umbrage::core::fit::{MaskView, Region, ShadowView};
+use umbrage::core::fit::ShadowView;
 use umbrage::core::idle::flat_caster_is_idle;
+use umbrage::core::masks::{Rect, Shadow};
 use umbrage::core::plan::Cull;
 use umbrage::core::technique::{Bias, Settings};
-use umbrage::core::{Aabb, DEPTH, Frustum, Light, LightKind, cone_may_see};
+use umbrage::core::volume::light_may_reach;
+use umbrage::core::{Aabb, Frustum, Light, LightKind, cone_may_see};
+use umbrage::mask::MaskPart;
+use umbrage::volume::VolumeItem;
 use umbrage_scene::{Mesh, Roles, Scene, is_closed, plane_of};
 
 /// One draw: a mesh and consecutive instances.
@@ -48,26 +51,15 @@ struct Item {
     plane_world: Option<Vec4>,
 }
 
-/// A caster of which a volume can be made.
-#[derive(Clone, Copy, Debug)]
-pub struct VolumeItem {
+/// Receivers of a mask: a mesh and consecutive instances.
+#[derive(Clone, Debug)]
+pub(crate) struct ReceiverBatch {
     /// Index of the mesh.
     pub mesh: usize,
-    /// Where it is.
-    pub world_from_object: Mat4,
-    /// Box around it.
-    pub bounds_world: Aabb,
-}
-
-/// A mesh of a blocker.
-#[derive(Clone, Copy, Debug)]
-pub struct MaskPart {
-    /// Index of the mesh.
-    pub mesh: usize,
-    /// Where it is.
-    pub world_from_object: Mat4,
-    /// Box around it.
-    pub bounds_world: Aabb,
+    /// Instances: first and past the last.
+    pub instances: std::ops::Range<u32>,
+    /// The pixels that may lie in the shadow.
+    pub on_screen: Rect,
 }
 
 /// Is an instance flat, and nothing behind it? `boxes` are those of all instances, world space.
@@ -261,23 +253,9 @@ impl Items {
         all: bool,
     ) -> impl Iterator<Item = VolumeItem> + 'a {
         let tolerance_m = 1e-6 * self.whole().size().max_element();
-        let is_lit = |bounds: &Aabb| {
-            let in_range =
-                light.range_m.filter(|_| light.kind != LightKind::Directional).is_none_or(|range_m| {
-                    let nearest = light.position_world.clamp(bounds.min, bounds.max);
-                    nearest.distance(light.position_world) <= range_m
-                });
-            let in_cone = match light.kind {
-                LightKind::Spot { outer_rad, .. } => {
-                    cone_may_see(light.position_world, light.direction_world.normalize(), outer_rad, bounds)
-                }
-                _ => true,
-            };
-            in_range && in_cone
-        };
         let is_needed = move |item: &&Item| {
             let is_caster = item.roles.blocker && !item.by_map && !item.bounds_world.is_empty();
-            let is_caster = is_caster && is_lit(&item.bounds_world);
+            let is_caster = is_caster && light_may_reach(light, &item.bounds_world);
             is_caster && (all || !self.is_idle(light, item, tolerance_m))
         };
         self.items.iter().filter(is_needed).map(|item| VolumeItem {
@@ -287,8 +265,8 @@ impl Items {
         })
     }
 
-    /// The objects that may throw a mask, each with its parts.
-    pub fn mask_blockers(&self, light: &Light) -> BTreeMap<u32, Vec<MaskPart>> {
+    /// The objects that may throw a mask, each with its parts. `versions` are those of the meshes.
+    pub fn mask_blockers(&self, light: &Light, versions: &[u64]) -> BTreeMap<u32, Vec<MaskPart>> {
         let tolerance_m = 1e-6 * self.whole().size().max_element();
         let mut blockers: BTreeMap<u32, (bool, Vec<MaskPart>)> = BTreeMap::new();
         let of_kind = self.items.iter().filter(|item| item.roles.blocker && !item.by_map);
@@ -296,7 +274,8 @@ impl Items {
             let (is_needed, parts) = blockers.entry(item.object).or_default();
             *is_needed |= !self.is_idle(light, item, tolerance_m);
             parts.push(MaskPart {
-                mesh: item.mesh,
+                mesh: item.mesh as u32,
+                version: versions[item.mesh],
                 world_from_object: item.world_from_object,
                 bounds_world: item.bounds_world,
             });
@@ -308,25 +287,13 @@ impl Items {
     /// The solid surfaces that are seen and may lie in a mask's shadow; their instances are appended to `instances`.
     pub(crate) fn mask_receivers(
         &self,
-        view: &MaskView,
+        shadow: &Shadow,
         owner: u32,
-        (clip_from_world, size): (Mat4, UVec2),
         instances: &mut Vec<GpuInstance>,
     ) -> Vec<ReceiverBatch> {
-        let shadow = Shadow::new(view, clip_from_world, size);
-        let seen = Frustum::from_clip(clip_from_world, DEPTH);
-        let mask = Frustum::from_clip(view.clip_from_world(), DEPTH).without_depth();
         let mut batches: Vec<ReceiverBatch> = Vec::new();
-        for item in &self.items {
-            let is_receiver = item.roles.receiver && !item.variant.blend && item.object != owner;
-            let is_beyond = item.bounds_world.corners().iter().any(|p| view.region(*p) != Region::Before);
-            if !is_receiver
-                || !is_beyond
-                || !seen.may_see(&item.bounds_world)
-                || !mask.may_see(&item.bounds_world)
-            {
-                continue;
-            }
+        let receivers = self.items.iter().filter(|item| item.roles.receiver && item.object != owner);
+        for item in receivers.filter(|item| !item.variant.blend) {
             let Some(on_screen) = shadow.on(&item.bounds_world) else { continue };
             let at = instances.len() as u32;
             instances.push(GpuInstance::new(&item.world_from_object));
@@ -341,27 +308,10 @@ impl Items {
         batches
     }
 
-    /// The pixels of a picture that a mask may darken; `None` where its shadow is not seen.
-    pub(crate) fn mask_on_screen(
-        &self,
-        view: &MaskView,
-        owner: u32,
-        clip_from_world: Mat4,
-        size: UVec2,
-    ) -> Option<Rect> {
-        let shadow = Shadow::new(view, clip_from_world, size);
-        let seen = Frustum::from_clip(clip_from_world, DEPTH);
-        let mut all: Option<Rect> = None;
-        let receivers = self.items.iter().filter(|item| item.roles.receiver && item.object != owner);
-        for item in receivers.filter(|item| seen.may_see(&item.bounds_world)) {
-            let Some(rect) = shadow.on(&item.bounds_world) else { continue };
-            let joined = all.map_or(rect, |all| all.union(rect));
-            if joined == Rect::whole(size) {
-                return Some(joined);
-            }
-            all = Some(joined);
-        }
-        all
+    /// Boxes of everything that shadows may fall on, each with its object; world space.
+    pub(crate) fn mask_boxes(&self) -> impl Iterator<Item = (u32, Aabb)> {
+        let receivers = self.items.iter().filter(|item| item.roles.receiver);
+        receivers.map(|item| (item.object, item.bounds_world))
     }
 
     /// The objects of the instances that [`Self::solid`] and [`Self::blended`] list, in the same order.

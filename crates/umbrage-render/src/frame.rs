@@ -7,6 +7,7 @@ use crate::readback;
 use crate::renderer::Renderer;
 use crate::threaded::{MapSchedule, locked};
 use crate::timing::{Measure, Queries, Statistics};
+use crate::volumes::Volumes;
 use crate::{RenderError, RenderOptions};
 use glam::Vec3;
 use std::collections::VecDeque;
@@ -96,6 +97,9 @@ impl Renderer<'_> {
         self.tell(index, &set)?;
 
         let stale = self.masks.as_ref().map(|masks| masks.stale(self.options.reuse)).unwrap_or_default();
+        if let Some(volumes) = self.volumes.as_mut().filter(|_| !self.options.reuse) {
+            volumes.forget_faces();
+        }
         let names = self.pass_names(&drawn, &stale);
         let queries = Queries::new(self.gpu, names.len() as u32, measure);
         let mut encoder =
@@ -111,7 +115,7 @@ impl Renderer<'_> {
         }
         //    And each mask that does not.
         if let Some(masks) = &mut self.masks {
-            let done = masks.record(&mut encoder, &stale, (&queries, pass));
+            let done = masks.record(self.gpu, &mut encoder, self.options.reuse, (&queries, pass));
             pass += done.len() as u32;
             work.extend(done);
         }
@@ -122,11 +126,8 @@ impl Renderer<'_> {
             pass += 1;
         }
         // 3. What is counted over them, or taken away from them.
-        if let Some(mut volumes) = self.volumes.take() {
-            let (reuse, size) = (self.options.reuse, self.options.size);
-            let done =
-                volumes.record(self.gpu, &mut encoder, &self.targets.depth, size, reuse, (&queries, pass));
-            self.volumes = Some(volumes);
+        if let Some(volumes) = &mut self.volumes {
+            let done = volumes.record(&mut encoder, &self.targets, (&queries, pass));
             pass += done.len() as u32;
             work.extend(done);
         }
@@ -274,7 +275,7 @@ impl Renderer<'_> {
             names.push("surfaces".to_owned());
         }
         names.extend(subtracted);
-        names.extend(self.volumes.iter().flat_map(|volumes| volumes.pass_names(self.options.reuse)));
+        names.extend(self.volumes.iter().flat_map(Volumes::pass_names));
         names.push(match self.options.view {
             _ if self.screen.is_none() => "lit surfaces".to_owned(),
             View::Final | View::Light => "lighting".to_owned(),

@@ -95,11 +95,11 @@ pub struct GpuFullVertex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::masks::GpuMaskList;
     use crate::shaders;
     use std::collections::BTreeMap;
     use std::mem::offset_of;
     use umbrage::core::layout::GpuView;
+    use umbrage::mask::GpuMaskList;
 
     macro_rules! offsets {
         ($ty:ty, $($field:ident),*) => { (vec![$((stringify!($field), offset_of!($ty, $field))),*], size_of::<$ty>()) };
@@ -173,7 +173,7 @@ mod tests {
                     uv_rows
                 ),
             ),
-            ("MaskList", offsets!(GpuMaskList, masks, seen)),
+            ("UmbrageMaskList", offsets!(GpuMaskList, masks, seen)),
             ("UmbrageView", (library("view"), size_of::<GpuView>())),
         ]);
         let mut seen = std::collections::BTreeSet::new();

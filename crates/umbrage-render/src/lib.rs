@@ -37,7 +37,6 @@ mod renderer;
 mod screen_v;
 mod settled;
 mod shaders;
-mod shadowed;
 mod surfaces;
 mod targets;
 mod textures;

@@ -106,7 +106,7 @@ impl Renderer<'_> {
             masks.reshape(index, mesh);
         }
         if let Some(volumes) = &mut self.volumes {
-            volumes.reshape(&self.gpu.device, index, mesh);
+            volumes.reshape(index, mesh);
         }
         let world = self.change();
         world.items.reshape(index, mesh);

@@ -1,6 +1,5 @@
 //! The three geometries of a blocker: what its view is fitted to, what its outline is drawn with, and the mesh that is shown.
 
-use crate::draw_list::MaskPart;
 use crate::maps::Growing;
 use crate::maskable::has_holes;
 use glam::{DVec4, Vec3};
@@ -9,6 +8,7 @@ use umbrage::core::fit::MaskView;
 use umbrage::core::technique::Settings;
 use umbrage::core::technique::mask::{FitTo, Mask, Outline};
 use umbrage::core::{Aabb, Light};
+use umbrage::mask::MaskPart;
 use umbrage_scene::{Mesh, Scene, is_closed};
 
 /// One mesh's.
@@ -95,7 +95,7 @@ impl Outlines {
     pub fn fit_points_world(&mut self, parts: &[MaskPart], fit_to: FitTo) -> Vec<Vec3> {
         let mut points = Vec::new();
         for part in parts {
-            let of_mesh = &mut self.meshes[part.mesh];
+            let of_mesh = &mut self.meshes[part.mesh as usize];
             if fit_to == FitTo::Box || self.reach_m > 0.0 {
                 let bounds = of_mesh.mesh.bounds;
                 let corners = bounds.corners().map(|p| part.world_from_object.transform_point3(p));
@@ -111,13 +111,13 @@ impl Outlines {
     /// Box around an object as it is where nothing moves its vertices.
     pub fn rest_box_world(&self, parts: &[MaskPart]) -> Aabb {
         parts.iter().fold(Aabb::EMPTY, |all, part| {
-            all.union(&self.meshes[part.mesh].mesh.bounds.transformed(&part.world_from_object))
+            all.union(&self.meshes[part.mesh as usize].mesh.bounds.transformed(&part.world_from_object))
         })
     }
 
     /// The indices that draw a part's outline into a mask: off by as many texels as may be, where it may be reduced.
     pub fn indices(&mut self, part: &MaskPart, view: &MaskView, light: &Light) -> Range<u32> {
-        let of_mesh = &mut self.meshes[part.mesh];
+        let of_mesh = &mut self.meshes[part.mesh as usize];
         let place = light.position_world.clamp(part.bounds_world.min, part.bounds_world.max);
         let nearest = place.distance(light.position_world).max(view.near_m);
         let texel_m = view.texel.min_element() * if view.perspective { nearest } else { 1.0 };
@@ -130,7 +130,7 @@ impl Outlines {
         // In steps, so that blockers of one mesh share outlines, and a light that moves finds them again; in small ones, because
         // triangles grow as what they may be off by shrinks.
         let level = if most_m > 0.0 { (4.0 * most_m.log2()).floor() as i32 } else { WHOLE };
-        let whole = self.outline(part.mesh, level);
+        let whole = self.outline(part.mesh as usize, level);
         if level == WHOLE { whole } else { self.side(part, level, whole, view) }
     }
 
@@ -155,7 +155,7 @@ impl Outlines {
     /// What of an outline covers as much as all of it. A ray enters a closed surface as often as it leaves it, so its lit side
     /// and its dark side have one outline: the side of fewer triangles is enough. The light is outside, or there is no mask.
     fn side(&mut self, part: &MaskPart, level: i32, whole: Range<u32>, view: &MaskView) -> Range<u32> {
-        let of_mesh = &mut self.meshes[part.mesh];
+        let of_mesh = &mut self.meshes[part.mesh as usize];
         let object_from_world = part.world_from_object.as_dmat4().inverse();
         let light = object_from_world * view.light_point_world().as_dvec4();
         let closed = *of_mesh.closed.get_or_insert_with(|| is_closed(&of_mesh.mesh));

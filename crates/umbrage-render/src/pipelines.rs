@@ -1,7 +1,6 @@
 //! The renderer's own pipelines.
 
 use crate::layout::{GpuFrame, GpuFullVertex, GpuLight, MAX_LIGHTS};
-use crate::masks::GpuMaskList;
 use crate::materials::Variant;
 use crate::options::View;
 use crate::shaders::{self, MOST_UNIFORM_VIEWS, ShaderNeeds};
@@ -9,6 +8,7 @@ use std::collections::HashMap;
 use std::num::NonZeroU64;
 use umbrage::CasterStreams;
 use umbrage::core::layout::GpuView;
+use umbrage::mask::GpuMaskList;
 
 /// The G-buffer: one texel a pixel, see `wgsl/surface.wgsl`.
 pub const GBUFFER: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;

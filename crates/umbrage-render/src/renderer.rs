@@ -28,6 +28,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use umbrage::core::fit::{MaskView, ShadowView};
 use umbrage::core::{Camera, DEPTH, Frustum};
+use umbrage::mask::mask_range;
 use umbrage::{CasterPipelines, ChosenFormat, ShadowMaps};
 use umbrage_scene::{Image, Scene};
 
@@ -130,7 +131,7 @@ impl<'a> Renderer<'a> {
         let drawn = (&geometry, &maker.materials);
         let masks = Masks::new(gpu, scene, &options, &caster_layout, depth, lights, drawn)?;
         let by_mesh = by_mesh(scene, &settled.by_map);
-        let volumes = Volumes::new(gpu, scene, &options, &by_mesh, &targets, depth, lights);
+        let volumes = Volumes::new(gpu, scene, &options, &by_mesh, depth, lights);
         let needs = shader_needs(scene, &options, &maker.settings, maker.format.storage, &set.lights);
         let mesh_pipelines = MeshPipelines::new(&gpu.device, &layouts, &needs, depth);
         let screen =
@@ -215,7 +216,7 @@ impl<'a> Renderer<'a> {
             self.mesh_pipelines.prepare(&gpu.device, forward, self.blended.iter().map(|b| b.variant));
         }
         let mut lights = set.lights.relit(&world.lights, self.exposure);
-        let of_masks = self.tell_masks(&world, &frustum, &eye, &mut lights);
+        let of_masks = self.tell_masks(&world, &frustum, &eye, &mut lights)?;
         let frame = eye.frame(&self.options, lights.len(), self.exposure, world.time_s);
         self.bindings.write(&gpu.queue, &frame, &lights);
         let group = match self.groups[index].take() {
@@ -231,7 +232,7 @@ impl<'a> Renderer<'a> {
         self.warnings.extend(of_masks);
         if let Some(volumes) = &mut self.volumes {
             let (size, all) = (self.options.size, self.options.all_casters);
-            self.warnings.extend(volumes.tell(gpu, &world, eye.clip_from_world, size, all));
+            self.warnings.extend(volumes.tell(&world, eye.clip_from_world, size, all));
         }
         self.told_warnings = self.warnings.len();
         self.told = Some(now);
@@ -245,16 +246,15 @@ impl<'a> Renderer<'a> {
         frustum: &Frustum,
         eye: &Eye,
         lights: &mut [GpuLight],
-    ) -> Vec<String> {
-        let Some(masks) = &mut self.masks else { return Vec::new() };
+    ) -> Result<Vec<String>, RenderError> {
+        let Some(masks) = &mut self.masks else { return Ok(Vec::new()) };
         let objects = world.items.objects(frustum, eye.position);
         self.objects.write(&self.gpu.device, &self.gpu.queue, bytemuck::cast_slice(&objects));
-        let warnings = masks.tell(self.gpu, world, eye.clip_from_world, self.options.size);
+        let warnings = masks.tell(self.gpu, world, eye.clip_from_world, self.options.size)?;
         for (index, light) in lights.iter_mut().enumerate() {
-            let range = masks.of_light(index);
-            light.masks = range.start as u32 | ((range.len() as u32) << 16);
+            light.masks = mask_range(&masks.of_light(index));
         }
-        warnings
+        Ok(warnings)
     }
 
     /// Memory of all shadow maps, bytes: that of all lights, and what is drawn on the way to them. It grows with the

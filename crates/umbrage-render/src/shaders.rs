@@ -2,12 +2,12 @@
 
 use crate::density::EDGE_ON_COS;
 use crate::layout::{MAX_LIGHTS, SHADER_CONSTANTS};
-use crate::masks::MOST_MASKS;
 use std::sync::Arc;
 use umbrage::caster::NO_DEFORM;
 use umbrage::core::DEPTH;
 use umbrage::core::technique::{Bias, Combination};
 use umbrage::core::wgsl::{assemble, assemble_with};
+use umbrage::mask::masks_wgsl;
 
 const FRAME: &str = include_str!("../wgsl/frame.wgsl");
 const SURFACE: &str = include_str!("../wgsl/surface.wgsl");
@@ -118,41 +118,15 @@ fn masked(needs: &ShaderNeeds) -> String {
         Some(combination) => mapped(needs, combination, "mapped_share"),
         None => ALL_VISIBLE.replace("visible_share", "mapped_share"),
     };
+    let masks = masks_wgsl(0, [11, 12, 13]);
     format!(
         "{others}
-struct MaskList {{
-    masks: array<UmbrageMask, {MOST_MASKS}>,
-    // The first pixel that each may darken and the one past the last, 16 bits a number, and the object that it is of.
-    seen: array<vec4u, {MOST_MASKS}>,
-}}
-
-@group(0) @binding(11) var<uniform> mask_list: MaskList;
-@group(0) @binding(12) var masks: texture_2d_array<f32>;
-@group(0) @binding(13) var mask_sampler: sampler;
-
+{masks}
 // The object that is shaded.
 var<private> at_object: u32;
 
 fn visible_share(index: u32, light: Light, p_world: vec3f, normal: vec3f, towards: vec3f) -> Seen {{
-    var covered = 0.0;
-    let end = (light.masks & 0xffffu) + (light.masks >> 16u);
-    for (var first = light.masks & 0xffffu; first < end; first += 32u) {{
-        // Most masks are far from most pixels. Those that are not are noted first and looked up together: neighbours then
-        // take as many turns as the one of them that lies in most.
-        var near = 0u;
-        for (var i = first; i < min(end, first + 32u); i++) {{
-            let seen = mask_list.seen[i];
-            let inside = at_pixel.x >= (seen.x & 0xffffu) && at_pixel.y >= (seen.x >> 16u)
-                && at_pixel.x < (seen.y & 0xffffu) && at_pixel.y < (seen.y >> 16u);
-            // What a mask shows of its own object may lie behind it.
-            near |= select(0u, 1u << (i - first), inside && seen.z != at_object);
-        }}
-        while near != 0u {{
-            let i = first + firstTrailingBit(near);
-            near &= near - 1u;
-            covered = max(covered, umbrage_mask_coverage(masks, mask_sampler, mask_list.masks[i], p_world, normal, towards));
-        }}
-    }}
+    let covered = umbrage_masks_coverage(light.masks, at_pixel, at_object, p_world, normal, towards);
     return Seen(1.0 - covered) * mapped_share(index, light, p_world, normal, towards);
 }}
 "

@@ -25,7 +25,9 @@ impl Layers {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
         let view = |base_array_layer, count, dimension| {
@@ -41,6 +43,11 @@ impl Layers {
             array: view(0, count, wgpu::TextureViewDimension::D2Array),
             texture,
         }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.layers.len() as u32
     }
 
     /// One layer, to draw to; `None` past the last.

@@ -2,7 +2,7 @@
 //! (Bjorke 2005, "Shadowing Strategies for HLSL and FX Composer", soft stencil shadows).
 
 use glam::{IVec2, Mat4, Vec4};
-use umbrage_core::DEPTH;
+use umbrage_core::DepthConvention;
 use umbrage_core::wgsl::assemble;
 
 /// How V is blurred.
@@ -30,20 +30,22 @@ struct GpuSoften {
     pad: f32,
 }
 
-/// What blurs V of one size, light by light.
+/// What blurs V of one size, light by light, each in its own way.
 #[derive(Debug)]
 pub struct Softener {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
-    uniforms: [wgpu::Buffer; 2],
     between: wgpu::TextureView,
-    bytes: u64,
-    height_px: u32,
+    format: wgpu::TextureFormat,
+    size_px: [u32; 2],
+    depth: DepthConvention,
 }
 
 /// A light's V, ready to be blurred in place.
 #[derive(Debug)]
 pub struct SoftenedV {
+    /// For rows, then for columns.
+    uniforms: [wgpu::Buffer; 2],
     groups: [wgpu::BindGroup; 2],
 }
 
@@ -52,9 +54,34 @@ fn shader() -> String {
     [&library, include_str!("../wgsl/soften.wgsl")].join("\n")
 }
 
+/// What is blurred along rows, and not along columns yet.
+fn between(
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+    [width_px, height_px]: [u32; 2],
+) -> wgpu::TextureView {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("half blurred visibility"),
+        size: wgpu::Extent3d { width: width_px, height: height_px, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&Default::default())
+}
+
 impl Softener {
-    /// For V of `format` and so many pixels. Memory: one more layer of V.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, width_px: u32, height_px: u32) -> Self {
+    /// For V of `format` and so many pixels. `depth` is the way in which the depth of the surfaces runs, cleared to
+    /// [`DepthConvention::clear`] where nothing is. Memory: one more layer of V.
+    pub fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        size_px: [u32; 2],
+        depth: DepthConvention,
+    ) -> Self {
         let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::FRAGMENT,
@@ -112,6 +139,20 @@ impl Softener {
             multiview_mask: None,
             cache: None,
         });
+        Self { pipeline, layout, between: between(device, format, size_px), format, size_px, depth }
+    }
+
+    /// Makes room for V of another size; nothing where it is the same. What [`Self::of`] made for the old size cannot be used any
+    /// more.
+    pub fn resize(&mut self, device: &wgpu::Device, size_px: [u32; 2]) {
+        if self.size_px != size_px {
+            self.between = between(device, self.format, size_px);
+            self.size_px = size_px;
+        }
+    }
+
+    /// A light's V, and the depth of the surfaces that it is V of: the depth aspect alone.
+    pub fn of(&self, device: &wgpu::Device, v: &wgpu::TextureView, depth: &wgpu::TextureView) -> SoftenedV {
         let uniform = |label| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -120,47 +161,6 @@ impl Softener {
                 mapped_at_creation: false,
             })
         };
-        let between = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("half blurred visibility"),
-            size: wgpu::Extent3d { width: width_px, height: height_px, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
-        let texel_bytes = format.block_copy_size(None).unwrap_or(1);
-        Self {
-            pipeline,
-            layout,
-            uniforms: [uniform("soften rows"), uniform("soften columns")],
-            between: between.create_view(&Default::default()),
-            bytes: u64::from(width_px) * u64::from(height_px) * u64::from(texel_bytes),
-            height_px,
-        }
-    }
-
-    /// Says how, and from where it is seen: from the next submission on.
-    pub fn write(&self, queue: &wgpu::Queue, softness: &Softness, clip_from_view: &Mat4) {
-        let (z, w) = (clip_from_view.row(2), clip_from_view.row(3));
-        for (uniform, step) in self.uniforms.iter().zip([IVec2::X, IVec2::Y]) {
-            let made = GpuSoften {
-                rows: Vec4::new(z.z, z.w, w.z, w.w),
-                step,
-                width_px: softness.width_px,
-                width_m: softness.width_m,
-                px_per_m: 0.5 * self.height_px as f32 * clip_from_view.y_axis.y.abs(),
-                like: softness.like,
-                nothing: DEPTH.clear(),
-                pad: 0.0,
-            };
-            queue.write_buffer(uniform, 0, bytemuck::bytes_of(&made));
-        }
-    }
-
-    /// A light's V, and the depth of the surfaces that it is V of: the depth aspect alone.
-    pub fn of(&self, device: &wgpu::Device, v: &wgpu::TextureView, depth: &wgpu::TextureView) -> SoftenedV {
         let group = |uniform: &wgpu::Buffer, source| {
             device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("umbrage soften"),
@@ -172,12 +172,32 @@ impl Softener {
                 ],
             })
         };
-        SoftenedV { groups: [group(&self.uniforms[0], v), group(&self.uniforms[1], &self.between)] }
+        let uniforms = [uniform("soften rows"), uniform("soften columns")];
+        SoftenedV { groups: [group(&uniforms[0], v), group(&uniforms[1], &self.between)], uniforms }
+    }
+
+    /// Says how a light's V is blurred, and from where it is seen: from the next submission on.
+    pub fn write(&self, queue: &wgpu::Queue, v: &SoftenedV, softness: &Softness, clip_from_view: &Mat4) {
+        let (z, w) = (clip_from_view.row(2), clip_from_view.row(3));
+        for (uniform, step) in v.uniforms.iter().zip([IVec2::X, IVec2::Y]) {
+            let made = GpuSoften {
+                rows: Vec4::new(z.z, z.w, w.z, w.w),
+                step,
+                width_px: softness.width_px,
+                width_m: softness.width_m,
+                px_per_m: 0.5 * self.size_px[1] as f32 * clip_from_view.y_axis.y.abs(),
+                like: softness.like,
+                nothing: self.depth.clear(),
+                pad: 0.0,
+            };
+            queue.write_buffer(uniform, 0, bytemuck::bytes_of(&made));
+        }
     }
 
     /// Memory, bytes.
     pub fn memory_bytes(&self) -> u64 {
-        self.bytes
+        let [width_px, height_px] = self.size_px.map(u64::from);
+        width_px * height_px * u64::from(self.format.block_copy_size(None).unwrap_or(1))
     }
 }
 

@@ -1,32 +1,30 @@
 //! Ten thousand casters, sixteen lights: where nothing moves nothing is asked of heap or GPU; where some move, as much as they are.
 
-#[path = "common/allocations.rs"]
-mod allocations;
 mod common;
 #[path = "common/crowd.rs"]
 mod crowd;
 
-use allocations::{Counting, during};
+use allocation_counter::measure;
 use common::{frame, gpu};
 use crowd::{CASTERS, LIGHTS, crowd};
 use umbrage::shadows::{Prepared, Recorded};
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
     let Some(gpu) = gpu() else { return };
     let mut crowd = crowd(&gpu, 128);
-    let step = |crowd: &mut crowd::Crowd| -> (Prepared, Recorded, u64) {
+    let step_from = |crowd: &mut crowd::Crowd, seen: &umbrage::Frame| -> (Prepared, Recorded, u64) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let ((prepared, recorded), asked) = during(|| {
-            let prepared = crowd.shadows.prepare(&frame()).expect("prepared");
-            (prepared, crowd.shadows.record(&mut encoder).expect("recorded"))
+        let mut done = None;
+        let asked = measure(|| {
+            let prepared = crowd.shadows.prepare(seen).expect("prepared");
+            done = Some((prepared, crowd.shadows.record(&mut encoder).expect("recorded")));
         });
         gpu.queue.submit([encoder.finish()]);
-        (prepared, recorded, asked)
+        let (prepared, recorded) = done.expect("it was measured");
+        (prepared, recorded, asked.count_total)
     };
+    let step = |crowd: &mut crowd::Crowd| step_from(crowd, &frame());
     let (prepared, recorded, asked) = step(&mut crowd);
     assert_eq!((prepared.lights, prepared.views), (LIGHTS as u64, 1 + 12 + 3 * 6));
     assert_eq!(recorded.maps, prepared.views);
@@ -34,8 +32,11 @@ fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
         asked > 100 && recorded.triangles > 12 * CASTERS as u64,
         "the first frame draws all: {recorded:?}"
     );
-    for _ in 0..100 {
-        let (prepared, recorded, asked) = step(&mut crowd);
+    for turn in 0..100u8 {
+        let mut seen = frame();
+        // For the first half the eye rests; then it moves.
+        seen.view_from_world.w_axis.x += f32::from(turn.saturating_sub(50));
+        let (prepared, recorded, asked) = step_from(&mut crowd, &seen);
         assert_eq!(asked, 0, "memory was asked for though nothing moved");
         assert_eq!((recorded, prepared.written_bytes, prepared.fitted), (Recorded::default(), 0, 0));
     }

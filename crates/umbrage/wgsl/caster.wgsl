@@ -62,7 +62,8 @@ fn vs_cut_out(@location(0) p_object: vec3f, instance: Instance, @location(4) uv_
 }
 
 fn cut_out(uv_alpha: vec3f) {
-    if textureSample(base_color, base_sampler, uv_alpha.xy).a * uv_alpha.z < 1.0 {
+    // A texel of eight bits is off by half a step: what is exactly at the cutoff must not be speckled.
+    if textureSample(base_color, base_sampler, uv_alpha.xy).a * uv_alpha.z < 0.998 {
         discard;
     }
 }

@@ -25,7 +25,7 @@ struct Instance {
 }
 
 struct Received {
-    // The same bits as where the surfaces were drawn.
+    // The same bits as where the surfaces were drawn, if that was done by the same arithmetic.
     @builtin(position) @invariant position: vec4f,
     @location(0) p_world: vec3f,
 }
@@ -68,4 +68,50 @@ fn fs_fringe(in: Received) -> @location(0) vec4f {
         discard;
     }
     return vec4f(1.0 - covered);
+}
+
+// Over depth of other arithmetic: 1 where depth grows towards the eye, else -1.
+override TOWARDS_EYE: f32 = 1.0;
+// Some steps of a depth that counts in whole steps; 0 for floats.
+override STEPS: f32 = 0.0;
+
+struct Nearer {
+    @builtin(frag_depth) depth: f32,
+    @location(0) color: vec4f,
+}
+
+// The depth of a receiver, moved towards the eye by what another order of operations may have moved the surface there: sixteen
+// roundings of its place and the eye's, which grow with their distance from the origin, some of the depth itself, and a sixteenth
+// of what its plane's depth changes by from pixel to pixel. A place that is off by a metre is off in depth, z / w, by |row_z - depth
+// row_w| / w at most.
+fn nearer(position: vec4f, p_world: vec3f) -> f32 {
+    let m = receiving.clip_from_world;
+    let row_z = vec3f(m[0].z, m[1].z, m[2].z);
+    let row_w = vec3f(m[0].w, m[1].w, m[2].w);
+    let eye_m = select(abs(m[3].z) / max(length(row_z), 1e-30), length(receiving.eye.xyz), receiving.eye.w > 0.0);
+    let off_m = 0x1p-20 * (length(p_world) + eye_m);
+    // The position's w is 1 / w here.
+    let off = off_m * length(row_z - position.z * row_w) * position.w;
+    let steps = 0x1p-20 * position.z + STEPS;
+    return saturate(position.z + TOWARDS_EYE * (off + steps + fwidth(position.z) / 16.0));
+}
+
+@fragment
+fn fs_core_nearer(in: Received) -> Nearer {
+    let covered = coverage(in.p_world);
+    let depth = nearer(in.position, in.p_world);
+    if covered < WHOLE {
+        discard;
+    }
+    return Nearer(depth, vec4f(1.0));
+}
+
+@fragment
+fn fs_fringe_nearer(in: Received) -> Nearer {
+    let covered = coverage(in.p_world);
+    let depth = nearer(in.position, in.p_world);
+    if covered <= 0.0 {
+        discard;
+    }
+    return Nearer(depth, vec4f(1.0 - covered));
 }

@@ -19,6 +19,9 @@ struct UmbrageLight {
     pad: u32,
 }
 
+// The number of a caster that is not known.
+const UMBRAGE_NOBODY = 0xffffffffu;
+
 // The way to a light, of any length.
 fn umbrage_towards(light: UmbrageLight, p_world: vec3f) -> vec3f {
     return light.point.xyz - p_world * light.point.w;

@@ -1,6 +1,8 @@
 //! What a mask may choose, and why there is none.
 
+use crate::bounds::Aabb;
 use crate::light::LightError;
+use crate::technique::mask::{Aim, Mask, Ratios as ChosenRatios};
 use glam::Vec3;
 
 /// Where the axis of a mask goes. Parallel light has no choice: all of its rays are axes.
@@ -53,6 +55,24 @@ impl Default for MaskOptions {
 }
 
 impl MaskOptions {
+    /// What a technique chooses, for masks of `size_texel` texels along a side in a scene of that box.
+    pub fn of(choices: &Mask, size_texel: u32, scene_world: &Aabb) -> Self {
+        Self {
+            size_texel,
+            frame: match choices.aim {
+                Aim::Mean => Frame::Mean,
+                Aim::Box => Frame::Box,
+            },
+            ratios: match choices.ratios {
+                ChosenRatios::Adaptive => Ratios::Adaptive,
+                ChosenRatios::Symmetric => Ratios::Symmetric,
+                ChosenRatios::Fixed => Ratios::Fixed,
+            },
+            fixed_half_m: scene_world.radius().max(1e-6),
+            ..Self::default()
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), MaskError> {
         let Self { size_texel, border_texel, fixed_half_m, .. } = *self;
         let least = 2 * u64::from(border_texel.max(1)) + 1;

@@ -7,7 +7,7 @@ use std::fmt;
 
 impl fmt::Display for Pass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}{}", self.name, if self.per_light { " (one for each shadowed light)" } else { "" })?;
+        writeln!(f, "{}{}", self.name, if self.per_light { times(self) } else { "" })?;
         writeln!(f, "  target  {}", target(self))?;
         writeln!(f, "  clear   {}", clear(self))?;
         write!(f, "  state   {}", state(self))?;
@@ -25,6 +25,17 @@ impl fmt::Display for Pass {
             }
         }
         write!(f, "\n  draws   {}", draws(self.draws))
+    }
+}
+
+/// How often a pass is drawn.
+fn times(pass: &Pass) -> &'static str {
+    match pass.target {
+        Target::Map { .. } | Target::Layer { .. } | Target::TranslucentMap { .. } | Target::Colors { .. } => {
+            " (one for each view of a shadowed light)"
+        }
+        Target::Mask { .. } => " (one for each blocker of a shadowed light)",
+        _ => " (one for each shadowed light)",
     }
 }
 

@@ -105,6 +105,17 @@ impl Method {
         self.rows().into_iter().flat_map(|(_, row)| row.params).collect()
     }
 
+    /// The parameter of its choices that has this name. Nothing is put on the heap: settings are asked in every frame.
+    pub(super) fn param(&self, name: &str) -> Option<&'static Param> {
+        let is_it = |param: &&'static Param| param.name == name;
+        match self {
+            Self::None => None,
+            Self::Map(combination) => combination.params().find(is_it),
+            Self::Volume(volume) => volume.params().find(is_it),
+            Self::Mask(mask) => mask.params().find(is_it),
+        }
+    }
+
     /// The map's choices, where it is a map.
     pub fn combination(&self) -> Option<Combination> {
         if let Self::Map(combination) = self { Some(*combination) } else { None }

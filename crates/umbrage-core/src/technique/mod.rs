@@ -116,7 +116,7 @@ pub const TECHNIQUES: &[Technique] = &[
     Technique {
         id: "hard",
         label: "Hard shadow map",
-        summary: "one comparison with the nearest texel: the cheapest map, with stairs at its edges",
+        summary: "one comparison with the nearest texel: the plainest map, with stairs at its edges",
         source: Some(WILLIAMS),
         method: Method::Map(Combination { filter: Filter::Nearest, ..LINEAR }),
     },

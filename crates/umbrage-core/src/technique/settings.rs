@@ -144,7 +144,7 @@ impl Settings {
 
     /// The value of a parameter: as set, or its default. `None` when this combination has no such parameter.
     pub fn value(&self, name: &str) -> Option<f32> {
-        let param = self.params().find(|p| p.name == name)?;
+        let param = self.method.param(name)?;
         Some(self.set_value(name).unwrap_or_else(|| match param.default {
             ParamDefault::Fixed(value) => value,
             ParamDefault::Derived { value, .. } => value(self.reach_texel()),

@@ -25,7 +25,7 @@ impl OverdrawPipelines {
         volumes: Option<&Volumes>,
         depth: wgpu::TextureFormat,
     ) -> Option<Self> {
-        let volumes = volumes.filter(|_| options.view == View::Volumes)?.pipelines();
+        let volumes = volumes.filter(|_| options.view == View::Volumes)?.pipelines()?;
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("overdraw"),
             source: wgpu::ShaderSource::Wgsl(OVERDRAW_WGSL.into()),
@@ -61,7 +61,8 @@ fn pipeline(
         blend: Some(wgpu::BlendState { color: add, alpha: add }),
         write_mask: wgpu::ColorWrites::RED | wgpu::ColorWrites::GREEN,
     };
-    let compare = counted.map_or(wgpu::CompareFunction::Always, Counted::depth_compare);
+    let compare =
+        counted.map_or(wgpu::CompareFunction::Always, |counted| counted.depth_compare(volumes.depth()));
     volumes.make(
         device,
         winding,

@@ -2,11 +2,13 @@
 
 use super::ShadowsError;
 use super::handles::{Id, Store, index};
-use super::meshes::is_finite;
+use super::lights::draws;
+use super::meshes::{Mesh, is_finite};
 use crate::caster::GpuInstance;
 use glam::{Mat4, Vec3};
 use slotmap::DefaultKey;
 use umbrage_core::Aabb;
+use umbrage_core::technique::Family;
 
 /// A caster.
 #[derive(Debug)]
@@ -29,6 +31,15 @@ pub(super) struct Caster {
     still_bounds: Option<Aabb>,
     /// What fits leave room for, so that they hold while it moves.
     pub room_world: Aabb,
+}
+
+/// What receives shadows and casts none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Receiver {
+    pub bounds_world: Aabb,
+    /// What is drawn where receivers are drawn once more.
+    pub mesh: Option<Id>,
+    pub placed: GpuInstance,
 }
 
 /// What became of casters since the last frame.
@@ -63,7 +74,7 @@ impl Changes {
 #[derive(Debug)]
 pub(super) struct Casters {
     pub all: Store<Caster>,
-    pub receivers: Store<Aabb>,
+    pub receivers: Store<Receiver>,
     /// By mesh and winding, so that neighbours go into one draw.
     order: Vec<DefaultKey>,
     order_is_stale: bool,
@@ -174,25 +185,25 @@ impl Casters {
         Ok(removed)
     }
 
-    pub fn add_receiver(&mut self, bounds_world: Aabb) -> Id {
-        self.changes.room.push(bounds_world);
-        self.receivers.insert(bounds_world)
+    pub fn add_receiver(&mut self, receiver: Receiver) -> Id {
+        self.changes.room.push(receiver.bounds_world);
+        self.receivers.insert(receiver)
     }
 
-    pub fn place_receiver(&mut self, id: Id, bounds_world: Aabb) -> Result<(), ShadowsError> {
-        let receiver = self.receivers.get_mut(id)?;
-        if *receiver != bounds_world {
-            *receiver = bounds_world;
-            self.changes.room.push(bounds_world);
+    pub fn place_receiver(&mut self, id: Id, receiver: Receiver) -> Result<(), ShadowsError> {
+        let known = self.receivers.get_mut(id)?;
+        if *known != receiver {
+            *known = receiver;
+            self.changes.room.push(receiver.bounds_world);
             self.changes.loose = true;
         }
         Ok(())
     }
 
-    pub fn remove_receiver(&mut self, id: Id) -> Result<(), ShadowsError> {
-        self.receivers.remove(id)?;
+    pub fn remove_receiver(&mut self, id: Id) -> Result<Receiver, ShadowsError> {
+        let removed = self.receivers.remove(id)?;
         self.changes.loose = true;
-        Ok(())
+        Ok(removed)
     }
 
     /// Begins a frame: sorts what changed into what moves and what stands still. `false`: nothing changed at all. The cost is
@@ -233,12 +244,7 @@ impl Casters {
             let all = &self.all;
             self.moving.sort_unstable_by_key(|key| place_in_order(all, *key));
         }
-        let changes = &self.changes;
-        changes.all
-            || changes.moving
-            || changes.loose
-            || !changes.still.is_empty()
-            || !changes.room.is_empty()
+        self.has_changed()
     }
 
     /// Lets what did not move for long stand still again: all at once and seldom, because what stands still is then drawn anew
@@ -273,11 +279,33 @@ impl Casters {
         self.order.iter().filter_map(of).filter(|(_, caster)| !caster.moving)
     }
 
+    /// Did anything change since the last frame?
+    pub fn has_changed(&self) -> bool {
+        let changes = &self.changes;
+        changes.all
+            || changes.moving
+            || changes.loose
+            || !changes.still.is_empty()
+            || !changes.room.is_empty()
+    }
+
+    /// Are there casters that a family cannot draw? Counted when casters were added, removed or changed.
+    pub fn left_to_maps(&self, meshes: &Store<Mesh>, family: Family) -> bool {
+        match family {
+            Family::None => false,
+            Family::Map => true,
+            _ => {
+                let mesh_of = |caster: &Caster| caster.mesh.and_then(|mesh| meshes.at(mesh.key));
+                self.all.iter().any(|(_, caster)| !draws(family, mesh_of(caster)))
+            }
+        }
+    }
+
     /// Boxes of all that casts or receives, with room for what moves.
     pub fn boxes_world(&self, boxes: &mut Vec<Aabb>) {
         boxes.clear();
         boxes.extend(self.all.iter().map(|(_, caster)| caster.room_world));
-        boxes.extend(self.receivers.iter().map(|(_, bounds)| *bounds));
+        boxes.extend(self.receivers.iter().map(|(_, receiver)| receiver.bounds_world));
     }
 }
 

@@ -17,6 +17,12 @@ pub enum ShadowsError {
     /// A light whose numbers cannot be used.
     #[error(transparent)]
     Light(#[from] LightError),
+    /// Volumes that cannot be made.
+    #[error(transparent)]
+    Volume(#[from] crate::volume::VolumeProblem),
+    /// Masks that cannot be made.
+    #[error(transparent)]
+    Mask(#[from] crate::mask::MasksError),
     /// A technique that the shader does not have.
     #[error(
         "the shader of these shadows has no `{asked}`; it has {declared}. Name it with `ShadowsOptions::technique` before `Shadows::new`"

@@ -1,10 +1,13 @@
 //! Lights: what each is, its technique, and its views.
 
 use super::handles::Store;
+use super::meshes::Mesh;
 use super::pool::Pool;
 use super::views::View;
+use crate::volume::VolumeSettings;
 use umbrage_core::fit::{Eye, Fallback, PlacedViews, fit_places};
-use umbrage_core::technique::{Family, Projection, Settings};
+use umbrage_core::technique::mask::Receivers;
+use umbrage_core::technique::{Family, Method, Projection, Settings};
 use umbrage_core::{Aabb, Light, LightError, LightKind};
 
 /// A light.
@@ -31,6 +34,34 @@ pub(super) struct Lit {
     pub is_loose: bool,
     /// First of its views in the table.
     pub first_view: u32,
+    /// How its volumes are drawn, if it has some.
+    pub volume: Option<VolumeSettings>,
+    /// Its layer of V on the screen.
+    pub screen: Option<u32>,
+    /// Its number among lights with masks, and its masks as the shader counts them.
+    pub mask_number: usize,
+    pub masks: u32,
+    /// Are its masks taken away from V on the screen?
+    pub is_subtractive: bool,
+    /// Are there more blockers than it may have masks?
+    pub is_crowded: bool,
+    /// Casters that its family cannot draw under this light, by number.
+    pub left_to_maps: Vec<usize>,
+    /// Are there casters that maps draw for it?
+    pub has_map_casters: bool,
+}
+
+fn is_subtractive(settings: &Settings) -> bool {
+    matches!(settings.method, Method::Mask(mask) if mask.receivers == Receivers::Subtractive)
+}
+
+/// Can a family draw a caster itself? Others are drawn into maps for it.
+pub(super) fn draws(family: Family, mesh: Option<&Mesh>) -> bool {
+    match family {
+        Family::None | Family::Map => true,
+        Family::Volume => mesh.is_some_and(Mesh::makes_volumes),
+        Family::Mask => mesh.is_some(),
+    }
 }
 
 impl Lit {
@@ -41,7 +72,6 @@ impl Lit {
         };
         Self {
             light,
-            settings,
             map_settings,
             lookup,
             casting: None,
@@ -52,7 +82,26 @@ impl Lit {
             fit_is_stale: true,
             is_loose: false,
             first_view: 0,
+            volume: VolumeSettings::of(&settings),
+            screen: None,
+            mask_number: 0,
+            masks: 0,
+            is_subtractive: is_subtractive(&settings),
+            is_crowded: false,
+            left_to_maps: Vec::new(),
+            has_map_casters: true,
+            settings,
         }
+    }
+
+    /// Is its V found on the screen?
+    pub fn is_on_screen(&self) -> bool {
+        self.volume.is_some() || self.is_subtractive
+    }
+
+    /// Has it masks?
+    pub fn is_masked(&self) -> bool {
+        self.family() == Family::Mask
     }
 
     /// Do its maps follow the eye?
@@ -61,15 +110,16 @@ impl Lit {
         combination.is_some_and(|c| c.projection != Projection::Fitted) && self.light.kind != LightKind::Point
     }
 
-    /// Are maps only for casters that its own family cannot draw?
-    pub fn maps_take_over(&self) -> bool {
-        self.settings.fallback().is_some()
+    /// What draws the casters that it can.
+    pub fn family(&self) -> Family {
+        self.settings.method.family()
     }
 
     /// Do its views have room for a box?
     pub fn has_room_for(&self, bounds_world: &Aabb) -> bool {
         // Without views, nothing was in reach; something may be now.
-        !self.views.is_empty() && self.views.iter().all(|view| view.has_room_for(bounds_world))
+        !self.has_map_casters
+            || !self.views.is_empty() && self.views.iter().all(|view| view.has_room_for(bounds_world))
     }
 
     /// Fits its views around boxes, those of what has maps; layers come from its pool and go back there. True when the number of
@@ -82,7 +132,11 @@ impl Lit {
         eye: Eye,
     ) -> Result<bool, LightError> {
         (self.fit_is_stale, self.is_loose) = (false, false);
-        let Some(settings) = &self.map_settings else { return Ok(false) };
+        let Some(settings) = self.map_settings.as_ref().filter(|_| self.has_map_casters) else {
+            let before = self.views.len();
+            self.views.drain(..).for_each(|view| pool.give_back(view.layer));
+            return Ok(before > 0);
+        };
         let storage = pool.kind.format.storage;
         let placed = match fit_places(&self.light, settings, storage, boxes_world, Some(eye)) {
             Ok(placed) => placed,

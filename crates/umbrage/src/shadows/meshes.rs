@@ -104,6 +104,10 @@ impl<'a> CasterMesh<'a> {
         Self { shape: Some((positions, indices)), ..self }
     }
 
+    pub(super) fn shape_on_cpu(&self) -> Option<(&'a [Vec3], &'a [u32])> {
+        self.shape
+    }
+
     /// With holes.
     #[must_use]
     pub fn cut_out(self, cut_out: CutOut<'a>) -> Self {
@@ -275,6 +279,11 @@ impl Mesh {
             casters: 0,
             version: 0,
         })
+    }
+
+    /// Can volumes be made of it? They know no holes.
+    pub fn makes_volumes(&self) -> bool {
+        self.has_shape && self.cut_out.is_none()
     }
 
     /// Triangles of one instance.

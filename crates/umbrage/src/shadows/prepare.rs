@@ -5,8 +5,10 @@ use super::handles::{LightHandle, index};
 use super::lights::{Lit, count_views};
 use super::table::GpuLit;
 use super::views::Drawn;
+use super::wgsl::{Resources, group};
 use super::{Frame, Shadows, ShadowsError, options};
 use crate::caster::GpuCasterView;
+use crate::volume::VolumeProblem;
 use umbrage_core::fit::{Eye, Fallback, FitError};
 use umbrage_core::layout::GpuView;
 use umbrage_core::volume::light_point_world;
@@ -42,6 +44,9 @@ pub enum ShadowsWarning {
         /// Why.
         why: Fallback,
     },
+    /// Volumes that could not be made as asked for; its light is a [`Shadows::light_index`].
+    #[error(transparent)]
+    Volume(VolumeProblem),
     /// A light has no map.
     #[error("a light throws no shadow: {why}")]
     NoMap {
@@ -72,19 +77,50 @@ impl Shadows {
             moved: self.casters.changes.moved,
             ..Prepared::default()
         };
-        let follows = |lit: &Lit| lit.follows_eye();
-        let has_stale = |lit: &Lit| lit.fit_is_stale || lit.is_loose;
-        let to_fit = eye_moved && self.lights.iter().any(|(_, lit)| follows(lit))
-            || self.lights.iter().any(|(_, lit)| has_stale(lit));
-        if moved || self.lights_changed || to_fit {
+        let is_due = |lit: &Lit| lit.fit_is_stale || lit.is_loose || eye_moved && lit.follows_eye();
+        let changed = moved || self.lights_changed || self.lights.iter().any(|(_, lit)| is_due(lit));
+        if changed || eye_moved {
+            self.tell_screen(frame)?;
+        }
+        // Masks may have left casters to maps.
+        let changed = changed || self.lights.iter().any(|(_, lit)| lit.fit_is_stale);
+        if changed {
             self.fit_lights(frame, eye_moved, &mut done)?;
             self.list_views(&mut done);
+        }
+        if changed || eye_moved {
+            self.write_lights(&mut done);
         }
         self.casters.changes.clear();
         done.views = count_views(&self.lights) as u64;
         done.stale_views = self.stale_views();
         self.is_prepared = true;
         Ok(done)
+    }
+
+    /// Says to volumes and masks what there is, and makes room for V on the screen.
+    fn tell_screen(&mut self, frame: &Frame) -> Result<(), ShadowsError> {
+        if self.casters.has_changed() {
+            self.casters.boxes_world(&mut self.scratch.boxes);
+            self.scene_world = self.scratch.boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
+        }
+        let gpu = (&self.device, &self.queue);
+        if let Some(screen) = &mut self.screen {
+            let mut count = 0;
+            for (_, lit) in self.lights.iter_mut() {
+                lit.screen = lit.is_on_screen().then_some(count);
+                count += u32::from(lit.screen.is_some());
+            }
+            self.group_is_stale |= screen.make_room(&self.device, frame, count)?;
+            screen.tell(gpu, frame, &self.lights, &self.meshes, &self.casters, &self.scene_world)?;
+        }
+        if let Some(masks) = &mut self.masks {
+            let (layout, scene) = (&self.cut_out_layout, &self.scene_world);
+            let format = self.screen.as_ref().map(|screen| screen.depth_format);
+            let (lights, meshes, casters) = (&mut self.lights, &self.meshes, &self.casters);
+            self.group_is_stale |= masks.tell(gpu, layout, frame, format, lights, meshes, casters, scene)?;
+        }
+        Ok(())
     }
 
     fn stale_views(&self) -> u64 {
@@ -99,11 +135,15 @@ impl Shadows {
         eye_moved: bool,
         done: &mut Prepared,
     ) -> Result<(), ShadowsError> {
-        let Self { casters, lights, pools, declared, device, scratch, .. } = self;
+        let Self { casters, lights, meshes, pools, declared, device, scratch, .. } = self;
         let changes = &casters.changes;
         let mut loose_turn = true;
         let mut has_boxes = false;
         for (_, lit) in lights.iter_mut() {
+            let has_map_casters = casters.left_to_maps(meshes, lit.family()) || !lit.left_to_maps.is_empty();
+            if has_map_casters != lit.has_map_casters {
+                (lit.has_map_casters, lit.fit_is_stale) = (has_map_casters, true);
+            }
             lit.is_loose |= changes.loose;
             let follows = lit.follows_eye() && (eye_moved || changes.moving || changes.all);
             let lacks_room = || changes.room.iter().any(|room| !lit.has_room_for(room));
@@ -149,23 +189,31 @@ impl Shadows {
         }
         self.choose_castings()?;
         self.number_views(done);
-        self.warn();
-        if std::mem::replace(&mut self.group_is_stale, false) {
-            self.group = super::wgsl::group(
-                &self.device,
-                &self.layout,
-                &self.declared,
-                &super::wgsl::Resources {
-                    table: &self.table,
-                    pools: &self.pools,
-                    comparison: &self.comparison,
-                    point: &self.point,
-                    screen: None,
-                },
-            );
-        }
         self.lights_changed = false;
         Ok(())
+    }
+
+    /// Writes what shaders know of lights, and makes the bind group anew where something in it is another.
+    fn write_lights(&mut self, done: &mut Prepared) {
+        let table = &mut self.scratch.table;
+        table.clear();
+        for (key, lit) in self.lights.iter() {
+            table.resize(table.len().max(index(key) + 1), GpuLit::default());
+            table[index(key)] = on_gpu(lit);
+        }
+        done.written_bytes += self.table.write_lights(&self.queue, table);
+        self.warn();
+        if std::mem::replace(&mut self.group_is_stale, false) {
+            let resources = Resources {
+                table: &self.table,
+                pools: &self.pools,
+                comparison: &self.comparison,
+                point: &self.point,
+                screen: self.screen.as_ref().map(|screen| screen.v.array()),
+                masks: self.masks.as_ref().map(|masks| masks.blockers.bindings()),
+            };
+            self.group = group(&self.device, &self.layout, &self.declared, &resources);
+        }
     }
 
     /// Which passes draw each light's maps, and the pipelines that they need.
@@ -196,10 +244,8 @@ impl Shadows {
 
     /// Gives views their numbers and writes those that changed, and the lights.
     fn number_views(&mut self, done: &mut Prepared) {
-        let table = &mut self.scratch.table;
-        table.clear();
         let mut number = 0;
-        for (key, lit) in self.lights.iter_mut() {
+        for (_, lit) in self.lights.iter_mut() {
             let first_view = number;
             let renumbered = std::mem::replace(&mut lit.first_view, first_view) != first_view;
             let pass = lit.casting.map(|casting| &self.castings[casting].pass);
@@ -218,10 +264,7 @@ impl Shadows {
                 }
                 number += 1;
             }
-            table.resize(table.len().max(index(key) + 1), GpuLit::default());
-            table[index(key)] = on_gpu(lit);
         }
-        done.written_bytes += self.table.write_lights(&self.queue, table);
     }
 
     /// Lists what each view draws that does not hold what it should.
@@ -236,7 +279,8 @@ impl Shadows {
                 meshes,
                 cull: casting.pass.cull,
                 colored: pools[casting.pool].kind.colored,
-                only: None,
+                family: lit.settings.method.family(),
+                left: &lit.left_to_maps,
             };
             for view in &mut lit.views {
                 if is_all || casters.changes.still.iter().any(|gone| view.may_see(gone)) {
@@ -266,6 +310,9 @@ impl Shadows {
             self.warnings.extend(lit.fallback.map(|why| ShadowsWarning::Fallback { light, why }));
             self.warnings.extend(lit.failure.clone().map(|why| ShadowsWarning::NoMap { light, why }));
         }
+        let volumes = self.screen.as_ref().and_then(|screen| screen.volumes.as_ref());
+        let problems = volumes.map_or(&[][..], |volumes| volumes.problems());
+        self.warnings.extend(problems.iter().copied().map(ShadowsWarning::Volume));
     }
 }
 
@@ -279,8 +326,8 @@ fn on_gpu(lit: &Lit) -> GpuLit {
         first_view: lit.first_view,
         places: lit.places,
         tiles: if lit.light.kind == LightKind::Point { 6 } else { 1 },
-        masks: 0,
-        screen: 0,
+        masks: lit.masks,
+        screen: lit.screen.map_or(0, |layer| layer + 1),
         lit_outside: is(lit.light.kind == LightKind::Directional || lit.places > 1),
         pad: 0,
     }

@@ -1,7 +1,8 @@
 //! The passes of a frame, recorded into the caller's encoder.
 
 use super::casting::{Casting, Pipelines};
-use super::handles::{CasterHandle, Id, LightHandle, Store};
+use super::handles::{CasterHandle, Id, LightHandle, Store, index};
+use super::lights::Lit;
 use super::meshes::Mesh;
 use super::pool::Pool;
 use super::views::{Draw, Draws, How, Kept, View};
@@ -12,6 +13,7 @@ use crate::{record_caster_pass, record_color_pass, record_nearest_pass};
 use slotmap::DefaultKey;
 use umbrage_core::fit::ShadowView;
 use umbrage_core::plan::Pass;
+use umbrage_core::technique::volume::Soften;
 
 /// What a frame's recording asks of the GPU, counted on the CPU.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,9 +23,11 @@ pub struct Recorded {
     pub maps: u64,
     /// Of those, maps for which what stands still was copied, not drawn.
     pub copied: u64,
-    /// Draw calls, without the caller's own.
+    /// Masks that were drawn.
+    pub masks: u64,
+    /// Draw calls into maps, without the caller's own.
     pub draws: u64,
-    /// Triangles, without the caller's own.
+    /// Triangles drawn into maps, without the caller's own.
     pub triangles: u64,
 }
 
@@ -85,7 +89,45 @@ impl Shadows {
                 recorder.record(encoder, view, &mut own, &mut done);
             }
         }
+        if let Some(masks) = &mut self.masks {
+            done.masks = masks.record(encoder, &self.meshes);
+        }
         Ok(done)
+    }
+
+    /// Records the passes that find V on the screen, for lights whose technique does so (volumes, subtractive masks): after the
+    /// depth of all that is lit is drawn, and before it is lit. Nothing for all other lights. `depth_stencil` is that depth, with
+    /// its stencil, one sample a pixel: its depth stays, its stencil is overwritten. Soft volumes read it, so that its texture needs
+    /// `TEXTURE_BINDING`.
+    ///
+    /// # Errors
+    /// [`ShadowsError::NotPrepared`]; [`ShadowsError::DepthFormat`], [`ShadowsError::DepthSize`], [`ShadowsError::Buffer`] and
+    /// [`ShadowsError::ForeignDevice`] for a depth that cannot be used.
+    pub fn record_screen(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        depth_stencil: &wgpu::TextureView,
+    ) -> Result<(), ShadowsError> {
+        if !self.is_prepared {
+            return Err(ShadowsError::NotPrepared { call: "record_screen" });
+        }
+        let Self { device, lights, meshes, screen, masks, .. } = self;
+        let Some(screen) = screen.as_mut().filter(|screen| screen.count > 0) else { return Ok(()) };
+        let blurs = |lit: &Lit| lit.volume.is_some_and(|volume| volume.choices.soften == Soften::Blur);
+        screen.check(device, depth_stencil, lights.iter().any(|(_, lit)| blurs(lit)))?;
+        let read = screen.checked.as_ref().and_then(|(_, read)| read.as_ref());
+        if let Some(volumes) = &mut screen.volumes {
+            let layer = |number: usize| lights.iter().find(|(key, _)| index(*key) == number)?.1.screen;
+            let v = &screen.v;
+            volumes.record(encoder, depth_stencil, read, |number| v.layer(layer(number)?), &mut ());
+        }
+        for (_, lit) in lights.iter().filter(|(_, lit)| lit.is_subtractive) {
+            let v = lit.screen.and_then(|layer| screen.v.layer(layer));
+            if let (Some(masks), Some(v)) = (masks.as_ref(), v) {
+                masks.record_subtract(encoder, depth_stencil, v, lit.mask_number, meshes);
+            }
+        }
+        Ok(())
     }
 
     /// The layout of bind group 0 in the closure of [`Shadows::record_with`]: a uniform buffer with a dynamic offset.

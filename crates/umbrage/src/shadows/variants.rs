@@ -29,6 +29,8 @@ pub(super) struct Declared {
     pub pools: Vec<PoolKind>,
     /// Is V of some lights found on the screen?
     pub screen: bool,
+    /// Are volumes counted for it?
+    pub volumes: bool,
     /// Are masks looked up?
     pub masks: bool,
     /// Are there masks at all?
@@ -68,7 +70,7 @@ impl Declared {
             match settings.method {
                 Method::None => {}
                 Method::Map(_) => made.add(device, settings)?,
-                Method::Volume(_) => made.screen = true,
+                Method::Volume(_) => (made.screen, made.volumes) = (true, true),
                 Method::Mask(mask) => {
                     made.screen |= mask.receivers == Receivers::Subtractive;
                     made.masks |= mask.receivers != Receivers::Subtractive;
@@ -150,7 +152,7 @@ impl Declared {
                 let found = resized.find_map(|settings| Some((self.find(&settings)?, settings)));
                 found.map(|(lookup, settings)| (settings, Some(lookup))).ok_or_else(refuse)
             }
-            Method::Volume(_) if !self.screen => Err(refuse()),
+            Method::Volume(_) if !self.volumes => Err(refuse()),
             Method::Mask(mask) => {
                 let has = if mask.receivers == Receivers::Subtractive { self.screen } else { self.masks };
                 let same_size = self

@@ -2,6 +2,7 @@
 
 use super::casters::{Caster, Casters};
 use super::handles::{CasterHandle, Id, Store, index};
+use super::lights::draws;
 use super::meshes::Mesh;
 use crate::caster::GpuInstance;
 use crate::growing::Growing;
@@ -9,6 +10,7 @@ use slotmap::DefaultKey;
 use std::ops::Range;
 use umbrage_core::fit::ShadowView;
 use umbrage_core::plan::Cull;
+use umbrage_core::technique::Family;
 use umbrage_core::{Aabb, Frustum, Light, LightKind, cone_may_see};
 
 /// Which pipeline draws a caster.
@@ -48,10 +50,6 @@ impl Draws {
         self.translucent.clear();
         self.own.clear();
         self.triangles = 0;
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.list.is_empty() && self.own.is_empty()
     }
 
     fn push(list: &mut Vec<Draw>, mesh: Id, how: How, at: u32) {
@@ -96,14 +94,26 @@ pub(super) struct View {
 }
 
 /// What decides which casters a view draws, and how.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Drawn<'a> {
     pub meshes: &'a Store<Mesh>,
     pub cull: Cull,
     /// Do translucent casters colour light?
     pub colored: bool,
-    /// Only what the light's own family cannot draw.
-    pub only: Option<&'a dyn Fn(DefaultKey, &Caster) -> bool>,
+    /// The light's own family, which leaves to maps what it cannot draw.
+    pub family: Family,
+    /// What else it leaves to maps, by number.
+    pub left: &'a [usize],
+}
+
+impl Drawn<'_> {
+    /// Do maps draw a caster?
+    fn takes(&self, key: DefaultKey, caster: &Caster) -> bool {
+        let mesh = caster.mesh.and_then(|mesh| self.meshes.at(mesh.key));
+        matches!(self.family, Family::None | Family::Map)
+            || !draws(self.family, mesh)
+            || self.left.contains(&index(key))
+    }
 }
 
 impl View {
@@ -226,7 +236,7 @@ impl View {
         seen.clear();
         for key in &casters.moving {
             let Some(caster) = casters.all.at(*key) else { continue };
-            if drawn.only.is_none_or(|only| only(*key, caster)) && self.may_see(&caster.bounds_world) {
+            if drawn.takes(*key, caster) && self.may_see(&caster.bounds_world) {
                 seen.push((index(*key), caster.moves));
             }
         }
@@ -264,7 +274,7 @@ impl View {
         placed.clear();
         let of = casters.all.id(DefaultKey::default());
         for (key, caster) in casters.still() {
-            if drawn.only.is_none_or(|only| only(key, caster)) && self.may_see(&caster.bounds_world) {
+            if drawn.takes(key, caster) && self.may_see(&caster.bounds_world) {
                 self.list(&mut draws, (key, caster), drawn, placed, of);
             }
         }

@@ -4,6 +4,7 @@ use super::options::ShadowsOptions;
 use super::pool::Pool;
 use super::table::Table;
 use super::variants::Declared;
+use crate::mask::masks_wgsl;
 use std::fmt::Write;
 use umbrage_core::technique::{Bias, Filter};
 use umbrage_core::wgsl::{Variant, assemble_variants};
@@ -23,8 +24,19 @@ pub(super) enum Bound {
     Nearest(usize),
     /// Colours of a pool.
     Colors(usize),
+    /// All masks in a list, their texture, what reads it.
+    MaskList,
+    Masks,
+    MaskSampler,
     /// V on the screen.
     Screen,
+}
+
+impl Bound {
+    /// Does it count to the sampled textures of a stage?
+    pub fn is_texture(self) -> bool {
+        matches!(self, Self::Maps(_) | Self::Nearest(_) | Self::Colors(_) | Self::Masks | Self::Screen)
+    }
 }
 
 /// All that a [`Declared`] binds.
@@ -35,6 +47,9 @@ pub(super) fn bound(declared: &Declared) -> Vec<Bound> {
         if pool.colored {
             bound.extend([Bound::Nearest(index), Bound::Colors(index)]);
         }
+    }
+    if declared.masks {
+        bound.extend([Bound::MaskList, Bound::Masks, Bound::MaskSampler]);
     }
     bound.extend(declared.screen.then_some(Bound::Screen));
     bound
@@ -60,7 +75,9 @@ pub(super) fn layout(device: &wgpu::Device, declared: &Declared) -> wgpu::BindGr
         if declared.pools[pool].format.storage.is_color() { float } else { wgpu::TextureSampleType::Depth }
     };
     let ty = |bound: &Bound| match *bound {
-        Bound::Lights | Bound::Views => uniform,
+        Bound::Lights | Bound::Views | Bound::MaskList => uniform,
+        Bound::Masks => texture(wgpu::TextureSampleType::Float { filterable: true }),
+        Bound::MaskSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         Bound::Comparison => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         Bound::Point => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
         Bound::Maps(pool) | Bound::Nearest(pool) => texture(of_map(pool)),
@@ -89,6 +106,7 @@ pub(super) struct Resources<'a> {
     pub comparison: &'a wgpu::Sampler,
     pub point: &'a wgpu::Sampler,
     pub screen: Option<&'a wgpu::TextureView>,
+    pub masks: Option<(&'a wgpu::Buffer, &'a wgpu::TextureView, &'a wgpu::Sampler)>,
 }
 
 /// The bind group.
@@ -109,6 +127,9 @@ pub(super) fn group(
             Bound::Maps(of) => TextureView(pool(of)?.maps().array()),
             Bound::Nearest(of) => TextureView(pool(of)?.translucent()?.nearest().array()),
             Bound::Colors(of) => TextureView(pool(of)?.translucent()?.colors()),
+            Bound::MaskList => resources.masks?.0.as_entire_binding(),
+            Bound::Masks => TextureView(resources.masks?.1),
+            Bound::MaskSampler => Sampler(resources.masks?.2),
             Bound::Screen => TextureView(resources.screen?),
         })
     };
@@ -143,6 +164,12 @@ fn bindings(group: u32, declared: &Declared, options: &ShadowsOptions) -> String
             Bound::Maps(pool) => format!("var umbrage_maps_{pool}: {}", map(pool)),
             Bound::Nearest(pool) => format!("var umbrage_nearest_{pool}: {}", map(pool)),
             Bound::Colors(pool) => format!("var umbrage_colors_{pool}: texture_2d_array<f32>"),
+            Bound::MaskList => {
+                let at = binding as u32;
+                text.push_str(&masks_wgsl(group, [at, at + 1, at + 2]));
+                continue;
+            }
+            Bound::Masks | Bound::MaskSampler => continue,
             Bound::Screen => "var umbrage_screen: texture_2d_array<f32>".to_owned(),
         };
         let _ = writeln!(text, "@group({group}) @binding({binding}) {declaration};");
@@ -204,8 +231,9 @@ pub(super) fn text(group: u32, declared: &Declared, options: &ShadowsOptions) ->
             Variant { modules, suffix, own: own.map_or(&[], |own| own) }
         })
         .collect();
-    let library =
-        assemble_variants(&["view", "locate", "face"], &variants).unwrap_or_else(|e| format!("// {e}\n"));
+    let mut shared = vec!["view", "locate", "face"];
+    shared.extend(declared.masks.then_some("mask"));
+    let library = assemble_variants(&shared, &variants).unwrap_or_else(|e| format!("// {e}\n"));
     let lookups: String =
         variants.iter().enumerate().map(|(number, variant)| lookup(number, declared, variant)).collect();
     let colored = declared.lookups.iter().any(|lookup| lookup.combination.colors_light());
@@ -226,6 +254,14 @@ pub(super) fn text(group: u32, declared: &Declared, options: &ShadowsOptions) ->
     } else {
         ""
     };
+    let by_masks = if declared.masks {
+        "    if light.masks != 0u {
+        seen *= 1.0 - umbrage_masks_coverage(light.masks, vec2u(pixel), caster, p_world, normal, towards);
+    }
+"
+    } else {
+        ""
+    };
     let (mean, rgb) = if colored { ("dot(seen, vec3f(1.0 / 3.0))", "seen") } else { ("seen", "vec3f(seen)") };
     let bindings = bindings(group, declared, options);
     let most = options.most_lights;
@@ -239,26 +275,34 @@ fn umbrage_mapped(light: UmbrageLight, p_world: vec3f, normal: vec3f, towards: v
     }}
 }}
 
-fn umbrage_seen(number: u32, p_world: vec3f, normal: vec3f, pixel: vec2f) -> {seen} {{
+fn umbrage_seen(number: u32, p_world: vec3f, normal: vec3f, pixel: vec2f, caster: u32) -> {seen} {{
     if number >= {most}u {{
         return {seen}(1.0);
     }}
     let light = umbrage_lights[number];
-    var seen = umbrage_mapped(light, p_world, normal, umbrage_towards(light, p_world));
-{on_screen}    return seen;
+    let towards = umbrage_towards(light, p_world);
+    var seen = umbrage_mapped(light, p_world, normal, towards);
+{by_masks}{on_screen}    return seen;
 }}
 
 // How much of light number `light` (`Shadows::light_index`) is seen from a surface: 1 lit, 0 in shadow. `p_world` is the surface's
 // place, `normal` its own, not interpolated (of any length), both in world space; `pixel` is `@builtin(position).xy`. Cone, falloff and the
 // angle of the light are the caller's.
 fn umbrage_visibility(light: u32, p_world: vec3f, normal: vec3f, pixel: vec2f) -> f32 {{
-    let seen = umbrage_seen(light, p_world, normal, pixel);
+    let seen = umbrage_seen(light, p_world, normal, pixel, UMBRAGE_NOBODY);
+    return {mean};
+}}
+
+// The same on caster number `caster` (`Shadows::caster_index`): masks then leave out its own, which knows not what of itself lies
+// behind it. Other techniques need no telling.
+fn umbrage_visibility_on(light: u32, p_world: vec3f, normal: vec3f, pixel: vec2f, caster: u32) -> f32 {{
+    let seen = umbrage_seen(light, p_world, normal, pixel, caster);
     return {mean};
 }}
 
 // The same in colours, for techniques that let translucent casters colour the light.
 fn umbrage_visibility_rgb(light: u32, p_world: vec3f, normal: vec3f, pixel: vec2f) -> vec3f {{
-    let seen = umbrage_seen(light, p_world, normal, pixel);
+    let seen = umbrage_seen(light, p_world, normal, pixel, UMBRAGE_NOBODY);
     return {rgb};
 }}
 "

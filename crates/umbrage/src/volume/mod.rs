@@ -7,21 +7,33 @@
 //! on clipping. Faces are drawn a few steps of depth behind where they are, so that lids count as behind their surfaces. Where
 //! a renderer's arithmetic is another, an inset puts the lids farther behind.
 //!
+//! The caller's depth may run either way ([`DepthConvention::Reversed`] or [`DepthConvention::ZeroToOne`]); pipelines are made for
+//! one of them. Reversed, lids of far casters are the more exact: steps of a float depth are then fine where casters are far.
+//!
 //! Counts wrap at 256, so that only their end counts, not the order of their faces; a pixel within exactly 256 volumes would be
 //! lit. Where a volume has no end ([`VolumeCaster::far_plane_world`]) the eye's far plane may not cut it: either the device has
 //! [`wgpu::Features::DEPTH_CLIP_CONTROL`], or `clip_from_world` has no far plane (`far_m` infinite in
 //! [`umbrage_core::projection::perspective`]). A parallel eye needs an end ([`umbrage_core::volume::finite_length_m`]). Faces
 //! counted before the surface are always cut at the near plane, where their count begins.
+//!
+//! [`ScreenVolumes`] does all of this for any number of lights, and ends before a far plane what it can: see there.
 
+mod caster;
 mod light;
 mod mesh;
 mod pipelines;
+mod screen;
 
-pub use light::{VolumeCaster, VolumeLight, Winding};
+pub use caster::{VolumeCaster, Winding};
+pub use light::{TooManyFaces, VolumeLight};
 pub use mesh::{VolumeMesh, VolumeSource};
 pub use pipelines::{COUNT_FORMATS, VolumePipelines, choose_count_format};
+pub use screen::{
+    CUT_LENGTHS, PassWatch, ScreenVolumes, ToldVolumes, VolumeEye, VolumeItem, VolumePass, VolumeProblem,
+    VolumeSettings, VolumeWork,
+};
 
-use umbrage_core::DEPTH;
+use umbrage_core::DepthConvention;
 use umbrage_core::technique::volume::{Counting, Stencil};
 
 /// Which faces of a stencil that counts both ways in one draw are drawn.
@@ -80,10 +92,10 @@ impl Counted {
         self == Self::Before
     }
 
-    /// The depth test that lets through what is counted, over the depth of the lit surfaces: faces at the depth of a surface are
-    /// behind it.
-    pub fn depth_compare(self) -> wgpu::CompareFunction {
-        match (self, DEPTH.is_reversed()) {
+    /// The depth test that lets through what is counted, over the depth of the lit surfaces, which runs as `depth` says: faces at the
+    /// depth of a surface are behind it.
+    pub fn depth_compare(self, depth: DepthConvention) -> wgpu::CompareFunction {
+        match (self, depth.is_reversed()) {
             (Self::Before, true) => wgpu::CompareFunction::Greater,
             (Self::Before, false) => wgpu::CompareFunction::Less,
             (Self::Behind, true) => wgpu::CompareFunction::LessEqual,
@@ -105,16 +117,17 @@ pub fn record_silhouettes(
     find(&mut recorded);
 }
 
-/// Writes the faces of a light's volumes. They hold until light or casters change.
+/// Writes those faces of a light's volumes that have to be found. They hold until light or casters change:
+/// [`VolumeLight::found`] says so.
 pub fn find_silhouettes(
     recorded: &mut wgpu::ComputePass<'_>,
     pipelines: &VolumePipelines,
     light: &VolumeLight,
     meshes: &[Option<VolumeMesh>],
 ) {
-    let Some(silhouettes) = &pipelines.silhouettes else { return };
+    let (Some(silhouettes), Some(room)) = (&pipelines.silhouettes, &light.room) else { return };
     recorded.set_pipeline(silhouettes);
-    for (number, caster) in light.casters().iter().enumerate() {
+    for (number, caster) in light.casters().iter().enumerate().filter(|(number, _)| light.is_stale(*number)) {
         let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
         let items = mesh.edges() + if caster.has_caps() { mesh.triangles() } else { 0 };
         let groups = items.div_ceil(64);
@@ -123,7 +136,7 @@ pub fn find_silhouettes(
         }
         // A dispatch has 65,535 groups along an axis at most.
         let rows = groups.div_ceil(65_535);
-        recorded.set_bind_group(0, &light.silhouette_group, &[light.offset(number, false)]);
+        recorded.set_bind_group(0, &room.silhouette_group, &[light.offset(number, false)]);
         recorded.set_bind_group(1, &mesh.edge_group, &[]);
         recorded.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
     }
@@ -177,23 +190,24 @@ pub fn draw_volumes<'a>(
     draw: &[(usize, Counted)],
     pipeline: impl Fn(Counted, Winding) -> &'a wgpu::RenderPipeline,
 ) {
+    let Some(room) = &light.room else { return };
     for (number, counted) in draw {
         let Some(caster) = light.casters().get(*number) else { continue };
         let Some(mesh) = meshes.get(caster.mesh).and_then(Option::as_ref) else { continue };
         match mesh.split() {
             None => {
                 recorded.set_pipeline(pipeline(*counted, caster.winding));
-                recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, false)]);
+                recorded.set_bind_group(0, &room.draw_group, &[light.offset(*number, false)]);
                 recorded.set_bind_group(1, &mesh.position_group, &[]);
-                recorded.set_index_buffer(light.indices.slice(..), wgpu::IndexFormat::Uint32);
-                recorded.draw_indexed_indirect(&light.counts, light.counts_offset(*number));
+                recorded.set_index_buffer(room.indices.slice(..), wgpu::IndexFormat::Uint32);
+                recorded.draw_indexed_indirect(&room.counts, light.counts_offset(*number));
             }
             Some(split) => {
                 recorded.set_vertex_buffer(0, split.vertices.slice(..));
                 recorded.set_index_buffer(split.indices.slice(..), wgpu::IndexFormat::Uint32);
                 for (range, reversed) in split.draws(caster.both_sides) {
                     recorded.set_pipeline(pipeline(*counted, caster.winding.turned(reversed)));
-                    recorded.set_bind_group(0, &light.draw_group, &[light.offset(*number, reversed)]);
+                    recorded.set_bind_group(0, &room.draw_group, &[light.offset(*number, reversed)]);
                     recorded.set_bind_group(1, &mesh.position_group, &[]);
                     recorded.draw_indexed(range, 0, 0..1);
                 }

@@ -6,7 +6,7 @@ use super::{Counted, Faces, Winding};
 use crate::caster::unclipped;
 use std::collections::HashMap;
 use std::num::NonZeroU64;
-use umbrage_core::DEPTH;
+use umbrage_core::DepthConvention;
 use umbrage_core::technique::volume::Silhouette;
 use umbrage_core::wgsl::assemble;
 
@@ -39,6 +39,7 @@ pub(crate) fn silhouette_shader() -> String {
 pub struct VolumePipelines {
     /// How faces are found.
     pub silhouette: Silhouette,
+    depth: DepthConvention,
     pub(super) silhouettes: Option<wgpu::ComputePipeline>,
     counts: HashMap<(Counted, Faces, Winding), wgpu::RenderPipeline>,
     pub(super) visibility: wgpu::RenderPipeline,
@@ -82,18 +83,21 @@ fn face(counted: Counted, up: bool) -> wgpu::StencilFaceState {
 /// Moves faces away from the eye by what the depths of a lid and of its surface may differ in where they are drawn in another
 /// order, turned or clipped: some steps of the format, and where a plane is steep the rounding of its slope over a wide picture.
 /// No edge of a shadow moves by more than a thirty-second of a pixel.
-fn behind() -> wgpu::DepthBiasState {
-    let away = DEPTH.away();
+fn behind(depth: DepthConvention) -> wgpu::DepthBiasState {
+    let away = depth.away();
     wgpu::DepthBiasState { constant: 8 * away as i32, slope_scale: 0.0, clamp: 0.0 }
 }
 
 impl VolumePipelines {
-    /// Makes pipelines over a depth of `format`, one of [`COUNT_FORMATS`], that write V to targets of `v_format`.
+    /// Makes pipelines over a depth of `format`, one of [`COUNT_FORMATS`], that write V to targets of `v_format`. `depth` is the way
+    /// in which the caller's depth buffer runs, and its projection with it; [`DepthConvention::OpenGl`] is read as
+    /// [`DepthConvention::ZeroToOne`], because wgpu cuts at 0.
     pub fn new(
         device: &wgpu::Device,
         silhouette: Silhouette,
         format: wgpu::TextureFormat,
         v_format: wgpu::TextureFormat,
+        depth: DepthConvention,
     ) -> Self {
         use wgpu::BufferBindingType::{Storage, Uniform};
         use wgpu::ShaderStages;
@@ -136,6 +140,7 @@ impl VolumePipelines {
         let layout = pipeline_layout("volumes", &[Some(&draw_layout), Some(&position_layout)]);
         let mut made = Self {
             silhouette,
+            depth,
             silhouettes,
             counts: HashMap::new(),
             visibility: visibility(device, &shader, &pipeline_layout("visibility", &[]), format, v_format),
@@ -155,6 +160,16 @@ impl VolumePipelines {
             }
         }
         made
+    }
+
+    /// Which way the depth runs that is counted over.
+    pub fn depth(&self) -> DepthConvention {
+        self.depth
+    }
+
+    /// Does a compute pass find faces?
+    pub(super) fn finds_faces(&self) -> bool {
+        self.silhouettes.is_some()
     }
 
     pub(super) fn counts(&self, counted: Counted, faces: Faces, winding: Winding) -> &wgpu::RenderPipeline {
@@ -187,9 +202,9 @@ impl VolumePipelines {
                 format,
                 depth_write_enabled: Some(false),
                 // Both ways to count have one test, and differ in what they do with its outcome.
-                depth_compare: Some(Counted::Before.depth_compare()),
+                depth_compare: Some(Counted::Before.depth_compare(self.depth)),
                 stencil: wgpu::StencilState { front, back, read_mask: 0xff, write_mask: 0xff },
-                bias: behind(),
+                bias: behind(self.depth),
             },
             None,
         )

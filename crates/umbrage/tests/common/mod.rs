@@ -128,6 +128,152 @@ pub fn frame() -> Frame {
     Frame::from_camera(&camera, [320, 240], umbrage::core::DepthConvention::ZeroToOne)
 }
 
+/// The pixel of [`frame`] that shows a point.
+pub fn pixel_of(p_world: Vec3) -> glam::Vec2 {
+    let frame = frame();
+    let clip = frame.clip_from_world() * p_world.extend(1.0);
+    (clip.truncate().truncate() / clip.w * glam::Vec2::new(0.5, -0.5) + 0.5) * frame.size_px.as_vec2()
+}
+
+/// Those of some points that the eye of [`frame`] sees, moved onto the middle of their pixels.
+pub fn seen_points(points: &[Vec3], boxes: &[(Vec3, Vec3)]) -> Vec<Vec3> {
+    let frame = frame();
+    let eye = frame.eye_world();
+    let world_from_clip = frame.clip_from_world().inverse();
+    let size = frame.size_px.as_vec2();
+    let onto_middle = |p: &Vec3| {
+        let pixel = pixel_of(*p).floor() + 0.5;
+        let ndc = (pixel / size - 0.5) * glam::Vec2::new(2.0, -2.0);
+        let through = world_from_clip.project_point3(ndc.extend(0.5));
+        let way = through - eye;
+        let on_ground = eye - way * (eye.y / way.y);
+        let inside = pixel.cmpge(glam::Vec2::ZERO).all() && pixel.cmplt(size).all();
+        let nothing_between = boxes.iter().all(|(middle, half)| {
+            let near = (*middle - *half - eye) / (on_ground - eye);
+            let far = (*middle + *half - eye) / (on_ground - eye);
+            near.min(far).max_element().max(0.0) >= near.max(far).min_element().min(0.999)
+        });
+        (inside && nothing_between && on_ground.abs().max_element() < 4.8).then_some(on_ground)
+    };
+    points.iter().filter_map(onto_middle).collect()
+}
+
+/// A caller's own depth of the ground and boxes, drawn as renderers usually do: matrix by matrix, near 0 and far 1.
+pub struct Depth {
+    pub view: wgpu::TextureView,
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    instances: wgpu::Buffer,
+    corners: wgpu::Buffer,
+    count: u32,
+}
+
+impl Depth {
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat, boxes: &[(Vec3, Vec3)]) -> Self {
+        let frame = frame();
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("the caller's depth"),
+            size: wgpu::Extent3d {
+                width: frame.size_px.x,
+                height: frame.size_px.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(
+                "struct Camera { view: mat4x4f, proj: mat4x4f }
+                @group(0) @binding(0) var<uniform> camera: Camera;
+                struct I { @location(1) a: vec4f, @location(2) b: vec4f, @location(3) c: vec4f, @location(4) d: vec4f }
+                @vertex fn vs(@location(0) p: vec3f, i: I) -> @builtin(position) vec4f {
+                    return camera.proj * (camera.view * (mat4x4f(i.a, i.b, i.c, i.d) * vec4f(p, 1.0)));
+                }"
+                .into(),
+            ),
+        });
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: None,
+                compilation_options: Default::default(),
+                buffers: &[
+                    Some(umbrage::CasterStreams::POSITIONS),
+                    Some(wgpu::VertexBufferLayout {
+                        array_stride: 64,
+                        step_mode: wgpu::VertexStepMode::Instance,
+                        attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
+                    }),
+                ],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Less),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: None,
+            multiview_mask: None,
+            cache: None,
+        });
+        let make = |contents: &[u8], usage| {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
+        };
+        let matrices = [frame.view_from_world, frame.clip_from_view];
+        let camera = make(bytemuck::cast_slice(&matrices), wgpu::BufferUsages::UNIFORM);
+        let (positions, indices) = cube();
+        let corners: Vec<Vec3> = indices.iter().map(|i| positions[*i as usize]).collect();
+        let flat = placed(Vec3::ZERO, Vec3::new(5.0, 0.0, 5.0));
+        let all: Vec<Mat4> = boxes.iter().map(|(at, half)| placed(*at, *half)).chain([flat]).collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: camera.as_entire_binding() }],
+        });
+        Self {
+            view: texture.create_view(&Default::default()),
+            pipeline,
+            group,
+            instances: make(bytemuck::cast_slice(&all), wgpu::BufferUsages::VERTEX),
+            corners: make(bytemuck::cast_slice(&corners), wgpu::BufferUsages::VERTEX),
+            count: all.len() as u32,
+        }
+    }
+
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("the caller's depth"),
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.view,
+                depth_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(1.0),
+                    store: wgpu::StoreOp::Store,
+                }),
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Store,
+                }),
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.corners.slice(..));
+        pass.set_vertex_buffer(1, self.instances.slice(..));
+        pass.draw(0..36, 0..self.count);
+    }
+}
+
 /// Points on the ground, a grid without any symmetry of the scene's.
 pub fn points(across: u32) -> Vec<Vec3> {
     let at = |i: u32| 9.6 * ((i as f32 + 0.37) / across as f32) - 4.8;
@@ -174,15 +320,16 @@ impl Probe {
     pub fn new(gpu: &Gpu, shadows: &Shadows) -> Self {
         let text = format!(
             "{}
-@group(0) @binding(0) var<storage, read> points: array<vec4f>;
+struct Asked {{ p: vec3f, light: f32, pixel: vec4f }}
+@group(0) @binding(0) var<storage, read> points: array<Asked>;
 @group(0) @binding(1) var<storage, read_write> seen: array<vec4f>;
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {{
     if id.x < arrayLength(&points) {{
         let p = points[id.x];
-        let light = u32(p.w);
-        let rgb = umbrage_visibility_rgb(light, p.xyz, vec3f(0.0, 1.0, 0.0), vec2f(0.0));
-        seen[id.x] = vec4f(rgb, umbrage_visibility(light, p.xyz, vec3f(0.0, 1.0, 0.0), vec2f(0.0)));
+        let light = u32(p.light);
+        let rgb = umbrage_visibility_rgb(light, p.p, vec3f(0.0, 1.0, 0.0), p.pixel.xy);
+        seen[id.x] = vec4f(rgb, umbrage_visibility(light, p.p, vec3f(0.0, 1.0, 0.0), p.pixel.xy));
     }}
 }}",
             shadows.wgsl(1)
@@ -231,7 +378,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         light: u32,
         points: &[Vec3],
     ) -> Vec<Vec4> {
-        let asked: Vec<Vec4> = points.iter().map(|p| p.extend(light as f32)).collect();
+        let asked: Vec<[Vec4; 2]> =
+            points.iter().map(|p| [p.extend(light as f32), pixel_of(*p).extend(0.0).extend(0.0)]).collect();
+        let count = points.len();
         let points = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: None,
             contents: bytemuck::cast_slice(&asked),
@@ -240,7 +389,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         let make = |usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: None,
-                size: 16 * asked.len() as u64,
+                size: 16 * count as u64,
                 usage,
                 mapped_at_creation: false,
             })
@@ -268,6 +417,61 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("polled");
         let bytes = read.get_mapped_range(..).expect("a range");
         bytemuck::cast_slice(&bytes).to_vec()
+    }
+
+    /// The same with the screen's passes, over a depth.
+    pub fn shoot_over(
+        &self,
+        gpu: &Gpu,
+        shadows: &mut Shadows,
+        depth: &Depth,
+        light: u32,
+        points: &[Vec3],
+    ) -> Vec<Vec4> {
+        shadows.prepare(&frame()).expect("prepared");
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        shadows.record(&mut encoder).expect("recorded");
+        depth.record(&mut encoder);
+        shadows.record_screen(&mut encoder, &depth.view).expect("recorded");
+        self.ask(gpu, encoder, shadows, light, points)
+    }
+
+    /// What the visibility buffer says at the same points, and what inline lookup does.
+    pub fn shoot_both(
+        &self,
+        gpu: &Gpu,
+        shadows: &mut Shadows,
+        depth: &Depth,
+        light: u32,
+        points: &[Vec3],
+    ) -> (Vec<f32>, Vec<Vec4>) {
+        let inline = self.shoot_over(gpu, shadows, depth, light, points);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        shadows.record_visibility(&mut encoder, &depth.view).expect("recorded");
+        let texture = shadows.visibility().expect("V").texture().clone();
+        let texel_bytes = texture.format().block_copy_size(None).expect("plain");
+        let row = (texture.width() * texel_bytes).next_multiple_of(256);
+        let read = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: u64::from(row * texture.height()),
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut from = texture.as_image_copy();
+        from.origin.z = light;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+        encoder.copy_texture_to_buffer(from, wgpu::TexelCopyBufferInfo { buffer: &read, layout }, size);
+        gpu.queue.submit([encoder.finish()]);
+        read.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("polled");
+        let bytes = read.get_mapped_range(..).expect("a range");
+        let at = |p: &Vec3| {
+            let pixel = pixel_of(*p).as_uvec2();
+            f32::from(bytes[(pixel.y * row + pixel.x * texel_bytes) as usize]) / 255.0
+        };
+        (points.iter().map(at).collect(), inline)
     }
 
     /// Prepares, records, and asks.
