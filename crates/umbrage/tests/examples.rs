@@ -178,6 +178,18 @@ fn the_first_shadow_takes_fewer_than_fifty_lines() {
     assert_eq!((marked("a(); // shadow"), marked("// shadow"), marked("a();")), (1, 0, 0));
 }
 
+/// The page that has wgpu's own example beside ours counts our lines as they are.
+#[test]
+fn the_page_beside_wgpus_example_counts_our_lines() {
+    let page = read("../../../docs/guide/wgpu-shadow.md");
+    for (of, file) in [("Rust", "wgpu_shadow/main.rs"), ("WGSL", "wgpu_shadow/forward.wgsl")] {
+        let row =
+            page.lines().find(|line| line.starts_with(&format!("| the example, {of} |"))).expect("its row");
+        let count = read(file).lines().filter(is_code).count();
+        assert!(row.ends_with(&format!("| {count} |")), "{file} has {count} lines: {row}");
+    }
+}
+
 /// Without the marked lines the shader is one that works alone.
 #[test]
 fn without_its_shadow_the_first_shader_is_whole() {
