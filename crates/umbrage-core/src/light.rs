@@ -239,6 +239,23 @@ impl Light {
         Ok(())
     }
 
+    /// Parallel white light of 1 lux that travels along `direction_world`, of any length.
+    pub fn sun(direction_world: Vec3) -> Self {
+        let direction_world = direction_world.try_normalize().unwrap_or(Vec3::NEG_Y);
+        Self {
+            kind: LightKind::Directional,
+            direction_world,
+            up_world: up_for(direction_world),
+            intensity: 1.0,
+            ..Self::default()
+        }
+    }
+
+    /// A white point light of 100 candela at a place, metres.
+    pub fn lamp(position_world: Vec3) -> Self {
+        Self { kind: LightKind::Point, position_world, ..Self::default() }
+    }
+
     /// The light's own axes as columns: right, up, backwards (the light looks along its own -Z, as cameras do).
     pub fn world_from_light_rotation(&self) -> Mat3 {
         let back = -self.direction_world.normalize();

@@ -109,7 +109,7 @@ pub fn unclipped(device: &wgpu::Device) -> bool {
     device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
 }
 
-/// Mirrors `CasterView` of `wgsl/caster.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
+/// Mirrors `UmbrageCasterView` of `wgsl/caster_view.wgsl`; see there for what each field means. Group 0 of caster pipelines holds one for each
 /// view, [`GpuCasterView::STRIDE`] bytes apart.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -155,10 +155,16 @@ impl GpuCasterView {
 /// Casters that nobody deforms.
 pub const NO_DEFORM: &str = include_str!("../wgsl/deform.wgsl");
 
+/// WGSL to stand before a shader of one's own that draws into maps: group 0 with a [`GpuCasterView`] (`umbrage_caster`), and
+/// `fn umbrage_caster_color(depth: f32, slope: vec2f) -> vec4f` for maps that keep distance in colours.
+pub fn caster_view_wgsl() -> String {
+    let away = format!("const UMBRAGE_CASTER_AWAY = {:?};\n", DEPTH.away());
+    [&away, include_str!("../wgsl/caster_view.wgsl")].join("\n")
+}
+
 /// The text of the caster shader, with a user's `fn umbrage_deform(p_world: vec3f, p_object: vec3f, time_s: f32) -> vec3f`.
 pub fn caster_shader(deform: &str) -> String {
-    let away = format!("const AWAY = {:?};\n", DEPTH.away());
-    [deform, &away, include_str!("../wgsl/caster.wgsl")].join("\n")
+    [deform, &caster_view_wgsl(), include_str!("../wgsl/caster.wgsl")].join("\n")
 }
 
 /// Channels of 8 bits that a colour target keeps distance in; 0: one float keeps it.
@@ -183,8 +189,7 @@ pub(crate) fn depth_bias(storage: Storage, pass: &Pass) -> wgpu::DepthBiasState 
 pub fn peel_shader(deform: &str) -> String {
     // All pipelines of the pass then begin with the same two groups: what is bound stays bound from one to the next.
     let caster = include_str!("../wgsl/caster.wgsl").replace("@group(1)", "@group(2)");
-    let away = format!("const AWAY = {:?};\n", DEPTH.away());
-    [deform, &away, &caster, include_str!("../wgsl/peel.wgsl")].join("\n")
+    [deform, &caster_view_wgsl(), &caster, include_str!("../wgsl/peel.wgsl")].join("\n")
 }
 
 /// The fragment shader of a pass, for solid casters or cut-out ones, depth or colour. `None`: depth is all that is drawn.
@@ -267,7 +272,7 @@ impl CasterPipelines {
         let view_layout = view_layout(device);
         let layer_layout = is_behind.then(|| crate::peel::layer_layout(device));
         let is_color = format.storage.is_color();
-        let constants = [("CHANNELS", channels(format.storage))];
+        let constants = [("UMBRAGE_CHANNELS", channels(format.storage))];
         let color_target = [Some(wgpu::ColorTargetState::from(format.format))];
         let bias = depth_bias(format.storage, pass);
         let pipeline = |label, groups: &[Option<&wgpu::BindGroupLayout>], cut_out: bool, cull_mode| {

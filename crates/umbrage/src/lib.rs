@@ -8,7 +8,7 @@
 //!
 //! ```no_run
 //! use glam::{Mat4, Vec3};
-//! use umbrage::core::{Aabb, Light, LightKind};
+//! use umbrage::core::{Aabb, Light};
 //! use umbrage::{CasterMesh, Frame, Shadows, ShadowsError, ShadowsOptions};
 //!
 //! // Once: which techniques there may be, what casts, what shines.
@@ -27,8 +27,7 @@
 //!     let mesh = shadows.add_mesh(&mesh)?;
 //!     shadows.add_caster(mesh, Mat4::from_translation(Vec3::Y))?;
 //!     shadows.add_receiver(Aabb { min: Vec3::new(-9.0, 0.0, -9.0), max: Vec3::new(9.0, 0.0, 9.0) })?;
-//!     let sun = Light { kind: LightKind::Directional, ..Light::default() };
-//!     shadows.add_light(sun.aimed(Vec3::new(3.0, 5.0, 2.0), Vec3::ZERO))?;
+//!     shadows.add_light(Light::sun(Vec3::new(-3.0, -5.0, -2.0)))?;
 //!     Ok(shadows)
 //! }
 //!

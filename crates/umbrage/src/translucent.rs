@@ -110,7 +110,7 @@ impl TranslucentPipelines {
             immediate_size: 0,
         });
         let is_color = format.storage.is_color();
-        let constants = [("CHANNELS", channels(format.storage))];
+        let constants = [("UMBRAGE_CHANNELS", channels(format.storage))];
         let pipeline = |label, entry_point, writes_depth, target: Option<wgpu::ColorTargetState>| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(label),

@@ -129,6 +129,9 @@ fn options_that_cannot_be_are_refused() {
         &["depth_stencil", "Depth24PlusStencil8"],
     );
     says(make(default().kernel("fn mine() {}")), &["umbrage_kernel"]);
+    let unknown =
+        "fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) -> vec4f {\n return rihgt; }";
+    says(make(default().kernel(unknown)), &["rihgt", "2:"]);
     let mut many = default();
     for size in 1..20 {
         let size = (64 * size).to_string();

@@ -8,7 +8,7 @@
 // it holds the far plane, and nothing is behind that.
 fn peel(position: vec4f) -> f32 {
     let before = textureLoad(nearer, vec2i(position.xy), 0);
-    if select(position.z <= before, position.z >= before, AWAY < 0.0) {
+    if select(position.z <= before, position.z >= before, UMBRAGE_CASTER_AWAY < 0.0) {
         discard;
     }
     return before;
@@ -20,9 +20,9 @@ fn peel(position: vec4f) -> f32 {
 // because rounding must not carry it past either. It grows with the second depth, so the depth test on it keeps the nearest.
 fn midpoint(position: vec4f) -> f32 {
     let before = peel(position);
-    let share = 0.5 * (share_of_depth(before) + share_of_depth(position.z));
-    let cone = view.near_m * (1.0 - share) / (view.near_m + share * (view.far_m - view.near_m));
-    let middle = select(1.0 - share, cone, view.perspective != 0u);
+    let share = 0.5 * (umbrage_share_of_depth(before) + umbrage_share_of_depth(position.z));
+    let cone = umbrage_caster.near_m * (1.0 - share) / (umbrage_caster.near_m + share * (umbrage_caster.far_m - umbrage_caster.near_m));
+    let middle = select(1.0 - share, cone, umbrage_caster.perspective != 0u);
     return clamp(middle, min(before, position.z), max(before, position.z));
 }
 
@@ -50,11 +50,11 @@ fn fs_midpoint_cut_out(in: CutOut) -> @builtin(frag_depth) f32 {
 
 @fragment
 fn fs_midpoint_color(in: Solid) -> @location(0) vec4f {
-    return color(midpoint(in.position), vec2f(0.0));
+    return umbrage_caster_color(midpoint(in.position), vec2f(0.0));
 }
 
 @fragment
 fn fs_midpoint_cut_out_color(in: CutOut) -> @location(0) vec4f {
     cut_out(in.uv_alpha);
-    return color(midpoint(in.position), vec2f(0.0));
+    return umbrage_caster_color(midpoint(in.position), vec2f(0.0));
 }

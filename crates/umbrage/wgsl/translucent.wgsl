@@ -37,5 +37,5 @@ fn fs_pane_depth(in: Pane) {
 fn fs_pane_distance(in: Pane) -> @location(0) vec4f {
     let slope = vec2f(dpdx(in.position.z), dpdy(in.position.z));
     _ = through(in);
-    return color(in.position.z, slope);
+    return umbrage_caster_color(in.position.z, slope);
 }

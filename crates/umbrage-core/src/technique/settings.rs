@@ -85,6 +85,15 @@ pub(super) fn suggest<'a>(asked: &str, known: impl Iterator<Item = &'a str>) -> 
         .unwrap_or_default()
 }
 
+impl PartialEq for Settings {
+    /// Do both draw the same? Values that are set to their defaults count as not set.
+    fn eq(&self, other: &Self) -> bool {
+        self.technique.id == other.technique.id
+            && self.method == other.method
+            && self.params().all(|param| self.value(param.name) == other.value(param.name))
+    }
+}
+
 impl Settings {
     /// Does the key name a table of choices, of any family?
     pub fn is_choice(key: &str) -> bool {
@@ -280,12 +289,18 @@ mod tests {
         assert_eq!(slope("unshadowed", &[]), None);
     }
 
+    fn settings_of(width: &str) -> Settings {
+        Settings::new("pcf", [("width", width)]).expect("valid")
+    }
+
     #[test]
     fn a_value_can_be_set_anew_and_is_refused_like_any_other() {
         let settings = Settings::new("pcf", [("width", "3")]).expect("valid");
         assert_eq!((settings.set_value("width"), settings.set_value("map_size")), (Some(3.0), None));
         let wider = settings.with_value("width", 7.0).expect("in range");
         assert_eq!(wider.value("width"), Some(7.0));
+        assert_ne!(wider, settings_of("3"));
+        assert_eq!(settings_of("5"), Settings::new("pcf", []).expect("5 is the default"));
         assert!(wider.clone().with_value("width", 2.5).expect_err("whole").to_string().contains("whole"));
         assert!(wider.with_value("soft_px", 2.0).is_err());
     }

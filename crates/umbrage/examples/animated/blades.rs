@@ -3,8 +3,9 @@
 use super::support::forward::{Forward, lit_pipeline};
 use super::support::{Gpu, Result};
 use glam::Vec3;
+use umbrage::caster::caster_view_wgsl;
 use umbrage::core::Aabb;
-use umbrage::shadows::OwnDraw;
+use umbrage::shadows::{OwnDraw, OwnTarget};
 use umbrage::{CasterHandle, Shadows};
 
 const COUNT: usize = 420;
@@ -32,8 +33,8 @@ pub struct Blades {
     caster: Option<CasterHandle>,
     /// Bind group 0 of what casts.
     view_layout: wgpu::BindGroupLayout,
-    /// One for each kind of map that was asked for so far: its depth's format and polygon offset tell them apart.
-    casting: Vec<(wgpu::TextureFormat, wgpu::DepthBiasState, wgpu::RenderPipeline)>,
+    /// One for each kind of map that was asked for so far.
+    casting: Vec<(OwnTarget, wgpu::RenderPipeline)>,
 }
 
 /// Where all of it is, whichever way it leans.
@@ -95,18 +96,15 @@ impl Blades {
         Ok(())
     }
 
-    /// Draws it into a map: the closure of `Shadows::record_with`. The techniques of this example keep depth; maps that keep distance
-    /// in colours (`packed`, `kernel`) would need a fragment shader that writes it.
+    /// Draws it into a map: the closure of `Shadows::record_with`.
     pub fn cast(&mut self, device: &wgpu::Device, asked: &OwnDraw<'_>, pass: &mut wgpu::RenderPass<'_>) {
-        let offset = &asked.pass.offset;
-        let bias = wgpu::DepthBiasState { constant: offset.constant, slope_scale: offset.slope, clamp: 0.0 };
-        let kind = (asked.depth_format, bias);
-        let made = self.casting.iter().position(|(format, bias, _)| (*format, *bias) == kind);
+        let made = self.casting.iter().position(|(target, _)| *target == asked.target);
         let made = made.unwrap_or_else(|| {
-            self.casting.push((kind.0, kind.1, casting_pipeline(device, &self.view_layout, kind)));
+            let pipeline = casting_pipeline(device, &self.view_layout, &asked.target);
+            self.casting.push((asked.target.clone(), pipeline));
             self.casting.len() - 1
         });
-        pass.set_pipeline(&self.casting[made].2);
+        pass.set_pipeline(&self.casting[made].1);
         pass.set_vertex_buffer(0, self.blades.slice(..));
         pass.draw(0..3, 0..COUNT as u32);
     }
@@ -122,9 +120,9 @@ impl Blades {
 fn casting_pipeline(
     device: &wgpu::Device,
     view_layout: &wgpu::BindGroupLayout,
-    (format, bias): (wgpu::TextureFormat, wgpu::DepthBiasState),
+    target: &OwnTarget,
 ) -> wgpu::RenderPipeline {
-    let text = [include_str!("blades.wgsl"), include_str!("cast.wgsl")].join("\n");
+    let text = [&caster_view_wgsl(), include_str!("blades.wgsl"), include_str!("cast.wgsl")].join("\n");
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("blades cast"),
         source: wgpu::ShaderSource::Wgsl(text.into()),
@@ -134,6 +132,7 @@ fn casting_pipeline(
         bind_group_layouts: &[Some(view_layout)],
         immediate_size: 0,
     });
+    let constants = [("UMBRAGE_CHANNELS", target.channels)];
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("blades cast"),
         layout: Some(&layout),
@@ -144,16 +143,18 @@ fn casting_pipeline(
             buffers: &[Some(LAYOUT)],
         },
         primitive: Default::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format,
-            depth_write_enabled: Some(true),
-            depth_compare: Some(umbrage::caster::depth_compare()),
-            stencil: Default::default(),
-            bias,
-        }),
+        depth_stencil: Some(target.depth_stencil.clone()),
         multisample: Default::default(),
-        // Depth is all that is drawn.
-        fragment: None,
+        // Depth is all that is drawn, but for maps that keep distance in colours.
+        fragment: target.color.is_some().then(|| wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fs_color"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..Default::default()
+            },
+            targets: std::slice::from_ref(&target.color),
+        }),
         multiview_mask: None,
         cache: None,
     })

@@ -14,7 +14,7 @@ use glam::{Mat4, Vec3};
 use support::forward::{Forward, Mesh, Placed};
 use support::shapes::Shape;
 use support::{Example, Gpu, Result, Target};
-use umbrage::core::{Aabb, Light, LightKind};
+use umbrage::core::{Aabb, Light};
 use umbrage::{CasterHandle, Frame, LightHandle, Shadows, ShadowsOptions};
 
 fn main() -> std::process::ExitCode {
@@ -81,7 +81,7 @@ fn things(time_s: f32) -> Vec<Placed> {
 fn lamp(time_s: f32) -> Light {
     let place = Vec3::new(1.5 * (0.9 * time_s).sin(), 3.0, 1.2 * (0.9 * time_s).cos() - 0.9);
     let color = Vec3::new(1.0, 0.72, 0.42);
-    Light { kind: LightKind::Point, position_world: place, color, intensity: 4.0, ..Light::default() }
+    Light { color, intensity: 4.0, ..Light::lamp(place) }
 }
 
 impl Example for Animated {
@@ -91,8 +91,8 @@ impl Example for Animated {
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, plain: bool) -> Result<Self> {
         let options = ShadowsOptions::with(TECHNIQUES)?.map_size(1024)?;
         let mut shadows = Shadows::new(&gpu.device, &gpu.queue, options)?;
-        let sun = Light { kind: LightKind::Directional, intensity: 0.7, ..Light::default() };
-        let sun = shadows.add_light(sun.aimed(Vec3::new(-0.5, 1.0, -0.45), Vec3::ZERO))?;
+        let sun = Light { intensity: 0.7, ..Light::sun(Vec3::new(0.5, -1.0, 0.45)) };
+        let sun = shadows.add_light(sun)?;
         let lamp = shadows.add_light(lamp(0.0))?;
         let things = things(0.0);
         let cube = Mesh::new(gpu, &mut shadows, &Shape::cube())?;
@@ -150,10 +150,8 @@ impl Animated {
         self.blades.sway(gpu, &mut self.shadows, time_s)?;
         self.shadows.set_light(self.lamp, lamp(time_s))?;
         let technique = TECHNIQUES[(0.5 * time_s) as usize % TECHNIQUES.len()];
-        // Asked for in each frame it would be drawn anew in each frame.
-        if self.shadows.light(self.sun)?.1.technique.id != technique {
-            self.shadows.set_technique_named(self.sun, technique)?;
-        }
+        // What it is already costs nothing.
+        self.shadows.set_technique_named(self.sun, technique)?;
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use glam::camera::rh::{proj::directx::perspective, view::look_at_mat4};
 use glam::{Mat4, Vec3, Vec4};
 use support::shapes::{Shape, Vertex};
 use support::{Example, Gpu, Result, Target};
-use umbrage::core::{Aabb, Light, LightKind}; // shadow
+use umbrage::core::{Aabb, Light}; // shadow
 use umbrage::{CasterHandle, CasterMesh, Frame, Shadows, ShadowsOptions}; // shadow
 
 fn main() -> std::process::ExitCode {
@@ -84,8 +84,7 @@ impl Example for Hello {
 
     fn new(gpu: &Gpu, format: wgpu::TextureFormat, plain: bool) -> Result<Self> {
         let mut shadows = Shadows::new(&gpu.device, &gpu.queue, ShadowsOptions::default())?; // shadow
-        let sun = Light { kind: LightKind::Directional, ..Light::default() }; // shadow
-        shadows.add_light(sun.aimed(TO_SUN, Vec3::ZERO))?; // shadow
+        shadows.add_light(Light::sun(-TO_SUN))?; // shadow
         let things = things();
         let mut handles = Vec::new(); // shadow
         let mut meshes = Vec::new();

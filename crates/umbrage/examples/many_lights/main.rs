@@ -13,7 +13,7 @@ use support::forward::{Forward, Mesh, Placed};
 use support::shapes::Shape;
 use support::{Example, Gpu, Result, Target};
 use umbrage::core::technique::Settings;
-use umbrage::core::{Aabb, Light, LightKind};
+use umbrage::core::{Aabb, Light};
 use umbrage::{CasterHandle, Frame, Shadows, ShadowsOptions};
 
 fn main() -> std::process::ExitCode {
@@ -84,11 +84,10 @@ fn lights() -> Vec<(usize, Light)> {
     }
     for i in 0..8 {
         let place = Vec3::new(3.4 * i as f32 - 10.2, 1.2, if i % 2 == 0 { -1.8 } else { 1.8 });
-        let lamp = Light { kind: LightKind::Point, position_world: place, ..Light::default() };
+        let lamp = Light::lamp(place);
         lights.push((1, Light { color: hue(3 * i + 1), intensity: 1.1, range_m: Some(5.0), ..lamp }));
     }
-    let sun = Light { kind: LightKind::Directional, intensity: 0.4, ..Light::default() };
-    lights.push((2, sun.aimed(Vec3::new(0.8, 1.0, 0.35), Vec3::ZERO)));
+    lights.push((2, Light { intensity: 0.4, ..Light::sun(-Vec3::new(0.8, 1.0, 0.35)) }));
     lights
 }
 

@@ -220,13 +220,13 @@ impl Casters {
         for key in touched.drain(..) {
             let Some(caster) = all.at_mut(key) else { continue };
             caster.touched = false;
+            changes.moved += 1;
             let is_new = !caster.moving && caster.still_bounds.is_none();
             if is_new && stands {
                 caster.still_bounds = Some(caster.bounds_world);
                 caster.room_world = caster.bounds_world;
                 continue;
             }
-            changes.moved += 1;
             changes.moving = true;
             if !caster.moving {
                 changes.still.extend(caster.still_bounds.take());

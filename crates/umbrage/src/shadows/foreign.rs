@@ -3,6 +3,19 @@
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
+/// What is wrong with WGSL, one line; `None` where nothing is, or the answer comes later.
+pub(super) fn wgsl_error(device: &wgpu::Device, text: String) -> Option<String> {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    // Only what is said of it counts.
+    let _ = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("umbrage checks"),
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    });
+    let popped = pin!(scope.pop());
+    let Poll::Ready(Some(error)) = popped.poll(&mut Context::from_waker(Waker::noop())) else { return None };
+    Some(error.to_string().split_whitespace().collect::<Vec<_>>().join(" "))
+}
+
 /// Did `use_it` raise a validation error? On the web errors come later than this call ends: no is then the answer, and the
 /// browser's own message says what is wrong.
 fn is_refused(device: &wgpu::Device, use_it: impl FnOnce()) -> bool {

@@ -61,13 +61,17 @@ impl Shadows {
     }
 
     /// Gives a light another technique, or another setting of its own, from the next [`Shadows::prepare`] on. One of the options'
-    /// techniques: parameters are free, choices are not.
+    /// techniques: parameters are free, choices are not. What it
+    /// has already costs nothing.
     ///
     /// # Errors
     /// [`ShadowsError::Undeclared`], [`ShadowsError::Removed`], [`ShadowsError::OfAnother`].
     pub fn set_technique(&mut self, handle: LightHandle, technique: &Settings) -> Result<(), ShadowsError> {
         let (settings, lookup) = self.declared.settle(technique)?;
         let lit = self.lights.get_mut(handle.0)?;
+        if lit.settings == settings {
+            return Ok(());
+        }
         lit.give_back(&mut self.pools, &self.declared.lookups);
         *lit = Lit::new(lit.light, (settings, lookup));
         self.lights_changed = true;

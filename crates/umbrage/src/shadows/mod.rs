@@ -18,6 +18,7 @@ mod lights;
 mod masks;
 mod meshes;
 mod options;
+mod own;
 mod pool;
 mod prepare;
 mod record;
@@ -34,8 +35,9 @@ pub use frame::Frame;
 pub use handles::{CasterHandle, LightHandle, MeshHandle, ReceiverHandle};
 pub use meshes::{CasterMesh, CutOut, Translucent};
 pub use options::ShadowsOptions;
+pub use own::{OwnDraw, OwnTarget};
 pub use prepare::{Prepared, ShadowsWarning};
-pub use record::{OwnDraw, Recorded};
+pub use record::Recorded;
 
 use crate::CasterPipelines;
 use crate::caster::{GpuCasterView, GpuInstance};
@@ -118,8 +120,8 @@ impl Shadows {
         options: ShadowsOptions,
     ) -> Result<Self, ShadowsError> {
         options.check()?;
-        if options.kernel.as_deref().is_some_and(|text| !text.contains("fn umbrage_kernel")) {
-            return Err(ShadowsError::Kernel { reason: "its text defines no `umbrage_kernel`".into() });
+        if let Some(reason) = options.kernel.as_deref().and_then(|text| kernel_error(device, text)) {
+            return Err(ShadowsError::Kernel { reason });
         }
         let declared = Declared::new(device, &options)?;
         check_limits(device, &declared)?;
@@ -232,6 +234,14 @@ impl Shadows {
         let visibility = self.visibility.as_ref().map_or(0, Visibility::memory_bytes);
         self.pools.iter().map(Pool::memory_bytes).sum::<u64>() + kept + peeled + screen + masks + visibility
     }
+}
+
+/// What is wrong with a user's kernel. Its own lines come first, so that a line number is that of its text.
+fn kernel_error(device: &wgpu::Device, text: &str) -> Option<String> {
+    let view = umbrage_core::wgsl::assemble(&["view"]).unwrap_or_default();
+    let call =
+        "fn umbrage_check(view: UmbrageView, x: vec4f) -> vec4f { return umbrage_kernel(view, x, x); }";
+    foreign::wgsl_error(device, format!("{text}\n{call}\n{view}"))
 }
 
 /// Does one stage of the device have room for what is bound?

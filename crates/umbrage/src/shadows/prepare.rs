@@ -11,6 +11,7 @@ use crate::caster::GpuCasterView;
 use crate::volume::VolumeProblem;
 use umbrage_core::fit::{Eye, Fallback, FitError};
 use umbrage_core::layout::GpuView;
+use umbrage_core::technique::{Bias, Settings};
 use umbrage_core::volume::light_point_world;
 use umbrage_core::{Aabb, LightKind};
 
@@ -47,6 +48,19 @@ pub enum ShadowsWarning {
     /// Volumes that could not be made as asked for; its light is a [`Shadows::light_index`].
     #[error(transparent)]
     Volume(VolumeProblem),
+    /// Meshes that are not closed, under a technique that needs solids.
+    #[error(
+        "{meshes} meshes with casters are not closed, and `{technique}` holds what lies behind a caster's front: where nothing is drawn \
+         there, an open caster throws no shadow or shadows itself; add what receives as casters, say `closed` of solids, or use `linear`"
+    )]
+    OpenMeshes {
+        /// Which light.
+        light: LightHandle,
+        /// Its technique.
+        technique: &'static str,
+        /// How many.
+        meshes: usize,
+    },
     /// A light has no map.
     #[error("a light throws no shadow: {why}")]
     NoMap {
@@ -305,15 +319,25 @@ impl Shadows {
 
     fn warn(&mut self) {
         self.warnings.clear();
+        let open = self.meshes.iter().filter(|(_, mesh)| mesh.casters > 0 && !mesh.closed).count();
         for (key, lit) in self.lights.iter() {
             let light = LightHandle(self.lights.id(key));
             self.warnings.extend(lit.fallback.map(|why| ShadowsWarning::Fallback { light, why }));
             self.warnings.extend(lit.failure.clone().map(|why| ShadowsWarning::NoMap { light, why }));
+            let technique = lit.settings.technique.id;
+            let needs_solids = open > 0 && !lit.views.is_empty() && needs_solids(&lit.settings);
+            let told = needs_solids.then_some(ShadowsWarning::OpenMeshes { light, technique, meshes: open });
+            self.warnings.extend(told);
         }
         let volumes = self.screen.as_ref().and_then(|screen| screen.volumes.as_ref());
         let problems = volumes.map_or(&[][..], |volumes| volumes.problems());
         self.warnings.extend(problems.iter().copied().map(ShadowsWarning::Volume));
     }
+}
+
+/// Does a map hold what lies behind the front of its casters?
+fn needs_solids(settings: &Settings) -> bool {
+    settings.combination().is_some_and(|c| matches!(c.bias, Bias::Midpoint | Bias::SecondDepth))
 }
 
 /// A light as the shader knows it.

@@ -1,9 +1,10 @@
 //! The passes of a frame, recorded into the caller's encoder.
 
 use super::casting::{Casting, Pipelines};
-use super::handles::{CasterHandle, Id, LightHandle, Store, index};
+use super::handles::{Id, LightHandle, Store, index};
 use super::lights::Lit;
 use super::meshes::Mesh;
+use super::own::{OwnDraw, OwnTarget};
 use super::pool::Pool;
 use super::views::{Draw, Draws, How, Kept, View};
 use super::{Shadows, ShadowsError};
@@ -11,8 +12,6 @@ use crate::caster::GpuCasterView;
 use crate::peel::record_peel_layer;
 use crate::{record_caster_pass, record_color_pass, record_nearest_pass};
 use slotmap::DefaultKey;
-use umbrage_core::fit::ShadowView;
-use umbrage_core::plan::Pass;
 use umbrage_core::technique::volume::Soften;
 
 /// What a frame's recording asks of the GPU, counted on the CPU.
@@ -31,25 +30,6 @@ pub struct Recorded {
     pub triangles: u64,
 }
 
-/// What the caller draws of a map: see [`Shadows::record_with`].
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub struct OwnDraw<'a> {
-    /// Which light.
-    pub light: LightHandle,
-    /// From where: `view.clip_from_world()` is what a vertex shader needs; bind group 0 holds it, too
-    /// ([`Shadows::own_draw_layout`]).
-    pub view: &'a ShadowView,
-    /// The pass: its polygon offset, and which faces it leaves out.
-    pub pass: &'a Pass,
-    /// The depth's format, and that of colours if the pass writes any.
-    pub depth_format: wgpu::TextureFormat,
-    /// Of the colour target of maps that keep distance in colours.
-    pub color_format: Option<wgpu::TextureFormat>,
-    /// Which casters to draw.
-    pub casters: &'a [CasterHandle],
-}
-
 type Own<'a> = dyn FnMut(&OwnDraw<'_>, &mut wgpu::RenderPass<'_>) + 'a;
 
 impl Shadows {
@@ -61,9 +41,9 @@ impl Shadows {
         self.record_with(encoder, |_, _| {})
     }
 
-    /// The same, and `own` draws the casters of [`Shadows::add_own_caster`] in each pass that needs them. Pipelines for it have one
-    /// depth target and are reversed ([`crate::caster::depth_compare`]). Bind group 0 is set ([`Shadows::own_draw_layout`], the
-    /// structure `CasterView` of `wgsl/caster.wgsl`) and has to stay; all else may be changed.
+    /// The same, and `own` draws the casters of [`Shadows::add_own_caster`] in each pass that needs them, with pipelines as
+    /// [`OwnTarget`] says. Bind group 0 is set ([`Shadows::own_draw_layout`], [`crate::caster::caster_view_wgsl`]) and has to stay; all
+    /// else may be changed. Midpoint maps keep the nearest of these casters themselves, and coloured light takes them for opaque.
     ///
     /// # Errors
     /// [`ShadowsError::NotPrepared`].
@@ -128,11 +108,6 @@ impl Shadows {
             }
         }
         Ok(())
-    }
-
-    /// The layout of bind group 0 in the closure of [`Shadows::record_with`]: a uniform buffer with a dynamic offset.
-    pub fn own_draw_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.view_layout
     }
 }
 
@@ -331,8 +306,6 @@ impl Recorder<'_> {
     }
 
     fn draw_own(&self, recorded: &mut wgpu::RenderPass<'_>, view: &View, part: Part, own: &mut Own<'_>) {
-        let format = &self.pool.kind.format;
-        let is_color = format.storage.is_color();
         for (draws, _) in self.lists(view, part) {
             if draws.own.is_empty() {
                 continue;
@@ -341,9 +314,7 @@ impl Recorder<'_> {
             let asked = OwnDraw {
                 light: self.light,
                 view: &view.view,
-                pass: &self.casting.pass,
-                depth_format: if is_color { crate::format::SCRATCH_DEPTH } else { format.format },
-                color_format: is_color.then_some(format.format),
+                target: OwnTarget::new(&self.pool.kind.format, &self.casting.pass),
                 casters: &draws.own,
             };
             own(&asked, recorded);

@@ -111,6 +111,20 @@ impl Shadows {
         Ok(CasterHandle(self.casters.add(Some(mesh.0), world_from_object, bounds_world)))
     }
 
+    /// Adds many casters of one mesh, in order.
+    ///
+    /// # Errors
+    /// As [`Shadows::add_caster`]; none is added then.
+    pub fn add_casters(
+        &mut self,
+        mesh: MeshHandle,
+        world_from_object: impl IntoIterator<Item = Mat4>,
+    ) -> Result<Vec<CasterHandle>, ShadowsError> {
+        let placed: Vec<Mat4> = world_from_object.into_iter().collect();
+        placed.iter().try_for_each(check_transform)?;
+        placed.into_iter().map(|placed| self.add_caster(mesh, placed)).collect()
+    }
+
     /// Adds a caster that the caller draws, in the closure of [`Shadows::record_with`]: what no mesh describes. Volumes and masks
     /// cannot be made of it; lights of these techniques draw it into a map.
     ///
