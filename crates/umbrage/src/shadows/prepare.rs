@@ -114,7 +114,8 @@ impl Shadows {
 
     /// Says to volumes and masks what there is, and makes room for V on the screen.
     fn tell_screen(&mut self, frame: &Frame) -> Result<(), ShadowsError> {
-        if self.casters.has_changed() {
+        let is_asked = self.screen.is_some() || self.masks.is_some();
+        if is_asked && self.casters.has_changed() {
             self.casters.boxes_world(&mut self.scratch.boxes);
             self.scene_world = self.scratch.boxes.iter().fold(Aabb::EMPTY, |all, one| all.union(one));
         }

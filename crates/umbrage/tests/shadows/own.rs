@@ -1,8 +1,6 @@
 //! Casters that the caller draws itself, into maps of every storage, beside those of registered meshes.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::{Mat4, Vec3};
 use umbrage::caster::caster_view_wgsl;
 use umbrage::core::Aabb;

@@ -1,8 +1,6 @@
 //! Wrong use is refused with words that say what to do, and changes nothing.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::{Mat4, Vec3};
 use umbrage::core::technique::Settings;
 use umbrage::core::{Aabb, Light};

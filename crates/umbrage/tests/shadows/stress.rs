@@ -1,9 +1,7 @@
 //! Anything in any order: lights, techniques of all families, casters of all kinds, sizes of the picture. wgpu objects to nothing, and
 //! in the end V is that of rays.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use umbrage::core::technique::TECHNIQUES;
 use umbrage::core::{Aabb, Light, LightKind};

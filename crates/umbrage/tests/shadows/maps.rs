@@ -1,8 +1,6 @@
 //! Maps of a [`Shadows`], looked up inline, against rays.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use umbrage::core::Light;
 use umbrage::core::technique::{Family, Settings, TECHNIQUES};

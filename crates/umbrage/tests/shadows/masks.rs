@@ -1,8 +1,6 @@
 //! Masks of a [`Shadows`], looked up inline and taken away on the screen, against rays.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use umbrage::core::technique::Settings;
 use umbrage::core::{Light, LightKind};

@@ -1,19 +1,15 @@
 //! Ten thousand casters, sixteen lights: where nothing moves nothing is asked of heap or GPU; where some move, as much as they are.
 
-mod common;
-#[path = "common/crowd.rs"]
-mod crowd;
-
+use crate::common::{frame, gpu};
+use crate::crowd::{CASTERS, Crowd, LIGHTS, crowd};
 use allocation_counter::measure;
-use common::{frame, gpu};
-use crowd::{CASTERS, LIGHTS, crowd};
 use umbrage::shadows::{Prepared, Recorded};
 
 #[test]
 fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
     let Some(gpu) = gpu() else { return };
     let mut crowd = crowd(&gpu, 128);
-    let step_from = |crowd: &mut crowd::Crowd, seen: &umbrage::Frame| -> (Prepared, Recorded, u64) {
+    let step_from = |crowd: &mut Crowd, seen: &umbrage::Frame| -> (Prepared, Recorded, u64) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut done = None;
         let asked = measure(|| {
@@ -24,7 +20,7 @@ fn what_stands_still_costs_nothing_and_what_moves_costs_what_it_is() {
         let (prepared, recorded) = done.expect("it was measured");
         (prepared, recorded, asked.count_total)
     };
-    let step = |crowd: &mut crowd::Crowd| step_from(crowd, &frame());
+    let step = |crowd: &mut Crowd| step_from(crowd, &frame());
     let (prepared, recorded, asked) = step(&mut crowd);
     assert_eq!((prepared.lights, prepared.views), (LIGHTS as u64, 1 + 12 + 3 * 6));
     assert_eq!(recorded.maps, prepared.views);

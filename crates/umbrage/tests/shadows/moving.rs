@@ -1,8 +1,6 @@
 //! What moves, comes and goes: maps hold what they should, and no more is drawn than has to be.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use umbrage::core::Light;
 use umbrage::{CasterHandle, LightHandle, MeshHandle, Shadows, ShadowsOptions};

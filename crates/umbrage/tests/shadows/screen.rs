@@ -1,8 +1,6 @@
 //! V on the screen, over a depth that the caller drew with its own arithmetic, against rays.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::Vec3;
 use umbrage::core::technique::Settings;
 use umbrage::{CasterMesh, Shadows, ShadowsError, ShadowsOptions};
