@@ -19,8 +19,8 @@ pub(super) struct Caster {
     pub placed: GpuInstance,
     pub bounds_world: Aabb,
     pub mirrored: bool,
-    /// Counts its moves.
-    pub moves: u32,
+    /// Another number after each move, and for each caster: whoever gets the place of a removed one is not taken for it.
+    pub stamp: u64,
     /// Is it drawn over what stands still?
     pub moving: bool,
     /// Frame of its last move.
@@ -82,8 +82,9 @@ pub(super) struct Casters {
     pub moving: Vec<DefaultKey>,
     touched: Vec<DefaultKey>,
     pub changes: Changes,
-    /// For messages and counters.
     frame: u64,
+    /// The last that was given.
+    stamp: u64,
 }
 
 /// Room around a moving box: half of its size on each side, so that fits hold for some frames.
@@ -129,17 +130,19 @@ impl Casters {
             touched: Vec::new(),
             changes: Changes::default(),
             frame: 0,
+            stamp: 0,
         }
     }
 
     pub fn add(&mut self, mesh: Option<Id>, world_from_object: Mat4, bounds_world: Aabb) -> Id {
+        self.stamp += 1;
         let id = self.all.insert(Caster {
             mesh,
             world_from_object,
             placed: GpuInstance::new(&world_from_object),
             bounds_world,
             mirrored: umbrage_core::volume::is_mirrored(&world_from_object),
-            moves: 0,
+            stamp: self.stamp,
             moving: false,
             moved_at: self.frame,
             touched: true,
@@ -166,7 +169,8 @@ impl Casters {
     /// Says that a caster is not as it was.
     pub fn touch(&mut self, key: DefaultKey) {
         let Some(caster) = self.all.at_mut(key) else { return };
-        caster.moves = caster.moves.wrapping_add(1);
+        self.stamp += 1;
+        caster.stamp = self.stamp;
         caster.moved_at = self.frame + 1;
         if !std::mem::replace(&mut caster.touched, true) {
             self.touched.push(key);

@@ -84,6 +84,9 @@ impl Masks {
         scene_world: &Aabb,
     ) -> Result<bool, ShadowsError> {
         let count = lights.iter().filter(|(_, lit)| lit.is_masked()).count();
+        if count == 0 && self.blockers.count() == 0 {
+            return Ok(false);
+        }
         let mut is_other = false;
         if count > self.blockers.lights() {
             let vertices = CasterVertices::default();

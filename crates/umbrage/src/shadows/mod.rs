@@ -102,7 +102,7 @@ struct Scratch {
     boxes: Vec<Aabb>,
     placed: Vec<GpuInstance>,
     moving_placed: Vec<GpuInstance>,
-    seen: Vec<(usize, u32)>,
+    seen: Vec<(usize, u64)>,
     table: Vec<GpuLit>,
 }
 
@@ -119,7 +119,7 @@ impl Shadows {
         queue: &wgpu::Queue,
         options: ShadowsOptions,
     ) -> Result<Self, ShadowsError> {
-        options.check()?;
+        options.check(device)?;
         if let Some(reason) = options.kernel.as_deref().and_then(|text| kernel_error(device, text)) {
             return Err(ShadowsError::Kernel { reason });
         }

@@ -91,7 +91,7 @@ impl ShadowsOptions {
         self
     }
 
-    pub(super) fn check(&self) -> Result<(), ShadowsError> {
+    pub(super) fn check(&self, device: &wgpu::Device) -> Result<(), ShadowsError> {
         let refuse =
             |option, value: String, allowed: String| Err(ShadowsError::Option { option, value, allowed });
         if self.techniques.is_empty() {
@@ -109,6 +109,12 @@ impl ShadowsOptions {
         if let Some(format) = self.depth_stencil.filter(|format| !format.has_stencil_aspect()) {
             let formats = crate::volume::COUNT_FORMATS.map(|format| format!("{format:?}")).join(" or ");
             return refuse("depth_stencil", format!("{format:?}"), formats);
+        }
+        let lacks = |format: &wgpu::TextureFormat| !device.features().contains(format.required_features());
+        if let Some(format) = self.depth_stencil.filter(lacks) {
+            let allowed =
+                format!("a format that the device has; {format:?} needs {:?}", format.required_features());
+            return refuse("depth_stencil", format!("{format:?}"), allowed);
         }
         Ok(())
     }

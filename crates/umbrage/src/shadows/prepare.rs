@@ -168,8 +168,11 @@ impl Shadows {
                 is_due = true;
             }
             let pool = lit.lookup.map(|lookup| declared.lookups[lookup].pool);
-            let Some(pool) = pool.filter(|_| is_due) else {
-                lit.fit_is_stale &= !is_due;
+            let Some(index) = pool.filter(|_| is_due) else {
+                // Without maps there is nothing to fit.
+                if pool.is_none() {
+                    (lit.fit_is_stale, lit.is_loose) = (false, false);
+                }
                 continue;
             };
             if !std::mem::replace(&mut has_boxes, true) {
@@ -177,7 +180,7 @@ impl Shadows {
             }
             let eye = Eye { camera: frame.camera(), aspect: frame.aspect() };
             let boxes: &[Aabb] = &scratch.boxes;
-            self.lights_changed |= lit.fit(device, &mut pools[pool], boxes, eye)?;
+            self.lights_changed |= lit.fit(device, &mut pools[index], boxes, eye)?;
             done.fitted += 1;
         }
         let views = count_views(&self.lights);

@@ -122,16 +122,15 @@ impl Screen {
         casters: &Casters,
         scene_world: &Aabb,
     ) -> Result<(), ShadowsError> {
-        if lights.iter().all(|(_, lit)| lit.volume.is_none()) {
-            return Ok(());
-        }
-        if self.volumes.is_none() {
+        let has_volumes = lights.iter().any(|(_, lit)| lit.volume.is_some());
+        if has_volumes && self.volumes.is_none() {
             let mut made = ScreenVolumes::new(device, queue, self.depth_format, frame.depth, V)?;
             for (number, positions, indices) in self.shapes.drain(..) {
                 made.set_mesh(number, &positions, &indices)?;
             }
             self.volumes = Some(made);
         }
+        // Without any light the ones that were told before are forgotten.
         let Some(volumes) = &mut self.volumes else { return Ok(()) };
         volumes.begin(&VolumeEye {
             clip_from_world: frame.clip_from_world(),

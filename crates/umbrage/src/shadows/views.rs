@@ -83,8 +83,8 @@ pub(super) struct View {
     pub still: Draws,
     pub still_placed: Growing,
     pub still_list_is_stale: bool,
-    /// What moves: numbers and how often each moved.
-    pub moving: Vec<(usize, u32)>,
+    /// What moves: numbers and stamps.
+    pub moving: Vec<(usize, u64)>,
     pub moving_draws: Draws,
     pub kept: Option<Kept>,
     /// Does the map hold what it should?
@@ -180,7 +180,7 @@ impl View {
             let reach_m = self.light.far_m.or(self.light.range_m).unwrap_or(f32::INFINITY);
             let least_m = if self.light.near_m.is_some() { f32::INFINITY } else { nearest.max(0.0) };
             return farthest.min(reach_m) <= view.far_m
-                && (least_m >= view.near_m || view.near_m <= 1e-3 * view.far_m);
+                && (least_m >= view.near_m || view.near_m <= 1.01e-4 * view.far_m);
         }
         let clip_from_world = view.clip_from_world();
         let is_inside = |p: &glam::Vec3| {
@@ -232,12 +232,12 @@ impl View {
     }
 
     /// Finds which of the moving casters it sees; those that it holds it need not draw again.
-    pub fn look_for_moving(&mut self, casters: &Casters, drawn: &Drawn<'_>, seen: &mut Vec<(usize, u32)>) {
+    pub fn look_for_moving(&mut self, casters: &Casters, drawn: &Drawn<'_>, seen: &mut Vec<(usize, u64)>) {
         seen.clear();
         for key in &casters.moving {
             let Some(caster) = casters.all.at(*key) else { continue };
             if drawn.takes(*key, caster) && self.may_see(&caster.bounds_world) {
-                seen.push((index(*key), caster.moves));
+                seen.push((index(*key), caster.stamp));
             }
         }
         if *seen != self.moving {

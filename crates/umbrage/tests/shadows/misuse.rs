@@ -126,6 +126,8 @@ fn options_that_cannot_be_are_refused() {
         make(default().depth_stencil(wgpu::TextureFormat::Depth32Float)),
         &["depth_stencil", "Depth24PlusStencil8"],
     );
+    let fine = wgpu::TextureFormat::Depth32FloatStencil8;
+    says(make(default().depth_stencil(fine)), &["Depth32FloatStencil8", "DEPTH32FLOAT_STENCIL8"]);
     says(make(default().kernel("fn mine() {}")), &["umbrage_kernel"]);
     let unknown =
         "fn umbrage_kernel(view: UmbrageView, right: vec4f, down: vec4f) -> vec4f {\n return rihgt; }";

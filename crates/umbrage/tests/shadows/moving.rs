@@ -107,6 +107,25 @@ fn whatever_happens_maps_hold_what_is_there() {
     }
 }
 
+/// A number that is given to another caster in the same frame does not make it the same caster.
+#[test]
+fn whoever_takes_a_place_is_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let points = points(40);
+    let mut world = world(&gpu, &["linear"], boxes(6, 3), 64);
+    step(&gpu, &mut world.shadows);
+    for turn in 0..3 {
+        let (at, half) = boxes(1, 50 + turn)[0];
+        let added = world.shadows.add_caster(world.mesh, placed(at, half)).expect("a caster");
+        world.casters.push(added);
+        world.boxes.push((at, half));
+        let wrong = world.wrong(&gpu, &points);
+        assert!(wrong < 0.01, "{wrong} with caster {turn}");
+        world.shadows.remove_caster(world.casters.pop().expect("it")).expect("removed");
+        world.boxes.pop();
+    }
+}
+
 /// Nothing moved: nothing is fitted, drawn or written. One moved: only views that see it, over a copy of what stands still.
 #[test]
 fn work_is_that_of_what_moved() {
