@@ -72,7 +72,11 @@ pub enum ShadowsWarning {
 }
 
 impl Shadows {
-    /// Makes ready what the next [`Shadows::record`] draws and what shaders look up. Call it once a frame, after all changes.
+    /// Makes ready what the next [`Shadows::record`] draws and what shaders look up. Call it once a frame, after all changes, and after
+    /// what was recorded for the last frame was submitted: it writes to buffers that the last frame reads.
+    ///
+    /// Maps that are fitted to the scene serve any number of eyes. Volumes, masks and maps that follow the eye are for one: several
+    /// eyes in one submission need a `Shadows` each.
     ///
     /// Cost on the CPU: that of what moved, times the number of views; where nothing changed, a few comparisons. Fitting a light
     /// anew costs some nanoseconds for each caster; it happens when the light moves, or something leaves the room that its maps
