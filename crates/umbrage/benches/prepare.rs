@@ -88,6 +88,15 @@ fn main() {
     assert!(eye.iter().all(|s| s.asked == 0 && s.recorded == Recorded::default()), "only the eye moved");
     print("only the eye moves", &eye);
     let mut turn = 0;
+    for (name, which) in [("a spot is carried", 5), ("a lamp is carried", 4), ("the sun turns", 0)] {
+        let mut steps = Vec::new();
+        for _ in 0..40 {
+            crowd.carry(which, turn);
+            steps.push(step(&gpu, &mut crowd));
+            turn += 1;
+        }
+        print(name, &steps);
+    }
     for (name, count) in [("0.1 % move", 10), ("1 % move", 100), ("10 % move", 1000), ("all move", CASTERS)] {
         let mut steps = Vec::new();
         for _ in 0..60 {

@@ -25,6 +25,17 @@ fn cut(polygon: &[DVec3], plane: &Plane) -> Vec<DVec3> {
     kept
 }
 
+/// How much of a box is inside of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Held {
+    /// It is outside of one plane.
+    Nothing,
+    /// Some, or, beside an edge, none.
+    Part,
+    /// It is inside of all planes.
+    All,
+}
+
 /// A convex body: its faces, and the planes that bound it.
 #[derive(Clone, Debug)]
 pub(super) struct Convex {
@@ -76,15 +87,27 @@ impl Convex {
         self.faces.is_empty()
     }
 
+    /// Where a box is, by planes alone. `corners` in the order of `Aabb::corners`.
+    pub fn holds(&self, corners: &[DVec3; 8]) -> Held {
+        let mut held = Held::All;
+        for plane in &self.planes {
+            let outside = corners.iter().filter(|p| height(plane, **p) < 0.0).count();
+            match outside {
+                0 => {}
+                8 => return Held::Nothing,
+                _ => held = Held::Part,
+            }
+        }
+        held
+    }
+
     /// The corners of what this body and a box have in common: each of them lies on a face of one inside the other.
     /// `corners` are the box's, in the order of `Aabb::corners`.
     pub fn common(&self, corners: [DVec3; 8]) -> Vec<DVec3> {
-        let mut heights = self.planes.iter().map(|plane| corners.map(|p| height(plane, p)));
-        if heights.clone().any(|h| h.iter().all(|h| *h < 0.0)) {
-            return Vec::new();
-        }
-        if heights.all(|h| h.iter().all(|h| *h >= 0.0)) {
-            return corners.to_vec();
+        match self.holds(&corners) {
+            Held::Nothing => return Vec::new(),
+            Held::All => return corners.to_vec(),
+            Held::Part => {}
         }
         let other = Self::from_corners(corners);
         let mut common: Vec<DVec3> = other.faces.iter().flat_map(|f| within(f, &self.planes)).collect();
