@@ -191,12 +191,16 @@ impl Casters {
 
     pub fn add_receiver(&mut self, receiver: Receiver) -> Id {
         self.changes.room.push(receiver.bounds_world);
+        self.changes.still.extend(receiver.mesh.map(|_| receiver.bounds_world));
         self.receivers.insert(receiver)
     }
 
     pub fn place_receiver(&mut self, id: Id, receiver: Receiver) -> Result<(), ShadowsError> {
         let known = self.receivers.get_mut(id)?;
         if *known != receiver {
+            // Maps that hold what lies behind casters hold receivers, too.
+            let drawn = receiver.mesh.map(|_| [known.bounds_world, receiver.bounds_world]);
+            self.changes.still.extend(drawn.into_iter().flatten());
             *known = receiver;
             self.changes.room.push(receiver.bounds_world);
             self.changes.loose = true;
@@ -206,6 +210,7 @@ impl Casters {
 
     pub fn remove_receiver(&mut self, id: Id) -> Result<Receiver, ShadowsError> {
         let removed = self.receivers.remove(id)?;
+        self.changes.still.extend(removed.mesh.map(|_| removed.bounds_world));
         self.changes.loose = true;
         Ok(removed)
     }

@@ -50,8 +50,9 @@ pub enum ShadowsWarning {
     Volume(VolumeProblem),
     /// Meshes that are not closed, under a technique that needs solids.
     #[error(
-        "{meshes} meshes with casters are not closed, and `{technique}` holds what lies behind a caster's front: where nothing is drawn \
-         there, an open caster throws no shadow or shadows itself; add what receives as casters, say `closed` of solids, or use `linear`"
+        "{meshes} meshes with casters are not closed, and `{technique}` holds what lies behind a caster's front: an open caster shadows \
+         itself, or throws no shadow where nothing is drawn behind it; add receivers with their meshes, say `closed` of solids, or use \
+         `linear`"
     )]
     OpenMeshes {
         /// Which light.

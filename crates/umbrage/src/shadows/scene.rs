@@ -188,7 +188,8 @@ impl Shadows {
         Ok(ReceiverHandle(self.casters.add_receiver(receiver)))
     }
 
-    /// The same with a mesh: subtractive masks draw receivers once more, and darken nothing that has none. It casts no shadow.
+    /// The same with a mesh, for techniques that draw receivers: subtractive masks darken nothing that has none, and midpoint maps
+    /// find there what lies behind casters that are not closed. It casts no shadow.
     ///
     /// # Errors
     /// [`ShadowsError::Number`] for a transform that is not finite and affine, [`ShadowsError::Removed`],

@@ -278,6 +278,15 @@ impl View {
                 self.list(&mut draws, (key, caster), drawn, placed, of);
             }
         }
+        // What shadows nothing may still be what lies behind the nearest surface.
+        if drawn.cull == Cull::Nothing {
+            for (_, receiver) in casters.receivers.iter().filter(|(_, r)| self.may_see(&r.bounds_world)) {
+                let Some(id) = receiver.mesh else { continue };
+                Draws::push(&mut draws.list, id, How::Open, placed.len() as u32);
+                placed.push(receiver.placed);
+                draws.triangles += drawn.meshes.at(id.key).map_or(0, Mesh::triangles);
+            }
+        }
         self.still = draws;
         let bytes: &[u8] = bytemuck::cast_slice(placed);
         self.still_placed.write(device, queue, bytes);

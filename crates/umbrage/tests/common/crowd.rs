@@ -1,5 +1,7 @@
 //! Ten thousand casters under sixteen lights.
 
+#![allow(dead_code, reason = "test and bench each use a part of it")]
+
 use crate::common::*;
 use glam::Vec3;
 use umbrage::core::{Aabb, Light};

@@ -2,9 +2,9 @@
 
 use crate::common::*;
 use glam::Vec3;
-use umbrage::core::Light;
 use umbrage::core::technique::{Family, Settings, TECHNIQUES};
-use umbrage::{Shadows, ShadowsOptions};
+use umbrage::core::{Aabb, Light};
+use umbrage::{CasterMesh, Shadows, ShadowsOptions};
 
 /// Every technique with maps, under every kind of light, is right wherever rays are sure; and none is right without casters.
 #[test]
@@ -84,4 +84,37 @@ fn techniques_share_a_frame_and_are_switched_between_frames() {
     assert!(probe.shoot(&gpu, &mut shadows, number, &points).iter().all(|v| v.w == 1.0));
     let refused = shadows.set_technique_named(handles[1], "kernel").expect_err("not declared").to_string();
     assert!(refused.contains("`kernel`") && refused.contains("midpoint"), "{refused}");
+}
+
+/// A midpoint is between two surfaces: behind what is open, a receiver has to be drawn; where none is, that is told.
+#[test]
+fn midpoints_behind_open_casters_are_those_of_receivers_meshes() {
+    let Some(gpu) = gpu() else { return };
+    let flag = [(Vec3::new(0.0, 2.0, 0.0), Vec3::new(1.5, 0.01, 1.5))];
+    let points = points(60);
+    for with_mesh in [false, true] {
+        let options = ShadowsOptions::with(["midpoint"]).and_then(|o| o.map_size(512)).expect("options");
+        let mut shadows = Shadows::new(&gpu.device, &gpu.queue, options).expect("shadows");
+        let probe = Probe::new(&gpu, &shadows);
+        // One side of a cube, flat: not closed.
+        let cube = CubeBuffers::new(&gpu);
+        let bounds = Aabb { min: Vec3::NEG_ONE, max: Vec3::ONE };
+        let side = CasterMesh::new(&cube.positions, 0..8, bounds);
+        let side = shadows
+            .add_mesh(&side.indexed(&cube.indices, wgpu::IndexFormat::Uint32, 18..24))
+            .expect("a mesh");
+        shadows.add_caster(side, placed(flag[0].0, flag[0].1)).expect("a caster");
+        if with_mesh {
+            let flat = placed(Vec3::ZERO, Vec3::new(5.0, 0.0, 5.0));
+            shadows.add_receiver_mesh(side, flat).expect("ground");
+        } else {
+            shadows.add_receiver(ground()).expect("ground");
+        }
+        shadows.add_light(sun()).expect("a light");
+        let seen = probe.shoot(&gpu, &mut shadows, 0, &points);
+        let (sure, wrong) = judge(&seen, &points, &sun(), &flag, 0.12);
+        assert_eq!(wrong <= sure / 200, with_mesh, "{wrong} of {sure}");
+        let told = shadows.warnings()[0].to_string();
+        assert!(told.contains("`midpoint`") && told.contains("receivers with their meshes"), "{told}");
+    }
 }
