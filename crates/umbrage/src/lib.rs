@@ -52,6 +52,7 @@
 //!
 //! # More
 //!
+//! - What is called when, and what each family needs: `docs/guide/renderer.md`.
 //! - Techniques: name more than one in [`ShadowsOptions`], and give each light its own with [`Shadows::set_technique_named`], at any
 //!   time. `umbrage techniques` lists them with their parameters.
 //! - Volumes and subtractive masks find V on the screen: call [`Shadows::record_screen`] after your depth is drawn.
