@@ -4,7 +4,7 @@ use crate::ShadowError;
 use umbrage_core::LightError;
 use umbrage_core::technique::SettingError;
 
-/// Why a call was refused. Nothing has changed then: the [`Shadows`](super::Shadows) is as it was before the call.
+/// Why a call was refused. Nothing has changed then, but that after a refused `prepare` recording is refused, too.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShadowsError {

@@ -85,9 +85,20 @@ impl Shadows {
     ///
     /// # Errors
     /// [`ShadowsError::Number`] for a frame that is no picture, [`ShadowsError::TooMany`] views, [`ShadowsError::Shadow`] when maps
-    /// cannot be made. The frame then keeps the shadows of the last one.
+    /// cannot be made. Recording is then refused until a frame is prepared.
     pub fn prepare(&mut self, frame: &Frame) -> Result<Prepared, ShadowsError> {
         frame.check()?;
+        self.is_prepared = false;
+        let done = self.prepare_checked(frame);
+        match done {
+            Ok(_) => self.is_prepared = true,
+            // Nothing is known of what was told in part.
+            Err(_) => self.frame = None,
+        }
+        done
+    }
+
+    fn prepare_checked(&mut self, frame: &Frame) -> Result<Prepared, ShadowsError> {
         let eye_moved = self.frame.as_ref() != Some(frame);
         self.frame = Some(*frame);
         let moved = self.casters.begin(u64::from(self.options.still_frames));
@@ -113,7 +124,6 @@ impl Shadows {
         self.casters.changes.clear();
         done.views = count_views(&self.lights) as u64;
         done.stale_views = self.stale_views();
-        self.is_prepared = true;
         Ok(done)
     }
 

@@ -179,6 +179,14 @@ fn a_depth_that_does_not_fit_is_refused() {
         shadows.record_screen(&mut encoder, &plain(none, FORMAT, 1)).expect_err("unreadable").to_string();
     assert!(refused.contains("TEXTURE_BINDING"), "{refused}");
     shadows.record_screen(&mut encoder, &depth.view).expect("and this one is fine");
+    let mut huge = frame();
+    huge.size_px.x = 100_000;
+    for _ in 0..2 {
+        let refused = shadows.prepare(&huge).expect_err("too large, also the second time").to_string();
+        assert!(refused.contains("max_texture_dimension_2d"), "{refused}");
+        let refused = shadows.record(&mut encoder).expect_err("no frame is prepared");
+        assert_eq!(refused, ShadowsError::NotPrepared { call: "record" });
+    }
     let mut reversed = frame();
     reversed.depth = umbrage::core::DepthConvention::Reversed;
     let refused = shadows.prepare(&reversed).expect_err("turned round").to_string();
