@@ -10,6 +10,14 @@ use crate::volume::{ScreenVolumes, VolumeEye, VolumeItem, choose_count_format};
 use glam::Vec3;
 use umbrage_core::{Aabb, DepthConvention};
 
+/// Of a view that is to be read, nobody tells which layer it shows.
+pub(super) const LAYERED: &str = "its texture has several layers or mip levels; pass a texture of one";
+
+/// Has a texture more than one picture?
+pub(super) fn is_layered(texture: &wgpu::Texture) -> bool {
+    texture.depth_or_array_layers() != 1 || texture.mip_level_count() != 1
+}
+
 /// V on the screen: 8 bits a light and pixel.
 pub(super) const V: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
@@ -178,6 +186,9 @@ impl Screen {
                 what: "depth",
                 reason: "it has several samples a pixel; draw a depth with one beside it".into(),
             });
+        }
+        if is_read && is_layered(texture) {
+            return Err(ShadowsError::Buffer { what: "depth", reason: LAYERED.into() });
         }
         if super::foreign::is_foreign_depth(device, view, texture.format()) {
             return Err(ShadowsError::ForeignDevice { what: "depth" });

@@ -1,6 +1,7 @@
 //! V of every light for every pixel, found from the caller's depth: for renderers that light later and add nothing to their shaders.
 
 use super::handles::index;
+use super::screen::{LAYERED, is_layered};
 use super::{Frame, Shadows, ShadowsError};
 use crate::layers::Layers;
 use bytemuck::{Pod, Zeroable};
@@ -161,6 +162,9 @@ fn check(device: &wgpu::Device, frame: &Frame, view: &wgpu::TextureView) -> Resu
     }
     if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
         return Err(refuse("it was made without TEXTURE_BINDING; add that to its usage"));
+    }
+    if is_layered(texture) {
+        return Err(refuse(LAYERED));
     }
     let (has_width, has_height) = (texture.width(), texture.height());
     if [has_width, has_height] != frame.size_px.to_array() {

@@ -178,6 +178,28 @@ fn a_depth_that_does_not_fit_is_refused() {
     let refused =
         shadows.record_screen(&mut encoder, &plain(none, FORMAT, 1)).expect_err("unreadable").to_string();
     assert!(refused.contains("TEXTURE_BINDING"), "{refused}");
+    let layered = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: 320, height: 240, depth_or_array_layers: 2 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    let second = layered.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_array_layer: 1,
+        array_layer_count: Some(1),
+        ..Default::default()
+    });
+    for refused in [
+        shadows.record_screen(&mut encoder, &second).expect_err("layered"),
+        shadows.record_visibility(&mut encoder, &second).expect_err("layered"),
+    ] {
+        assert!(refused.to_string().contains("several layers"), "{refused}");
+    }
     shadows.record_screen(&mut encoder, &depth.view).expect("and this one is fine");
     let mut huge = frame();
     huge.size_px.x = 100_000;
