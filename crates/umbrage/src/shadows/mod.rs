@@ -9,6 +9,7 @@
 
 mod casters;
 mod casting;
+mod depth;
 mod error;
 mod foreign;
 mod frame;

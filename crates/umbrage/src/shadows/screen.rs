@@ -4,19 +4,11 @@ use super::casters::Casters;
 use super::handles::{Store, index};
 use super::lights::Lit;
 use super::meshes::Mesh;
-use super::{Frame, ShadowsError};
+use super::{Frame, ShadowsError, depth};
 use crate::layers::Layers;
 use crate::volume::{ScreenVolumes, VolumeEye, VolumeItem, choose_count_format};
 use glam::Vec3;
 use umbrage_core::{Aabb, DepthConvention};
-
-/// Of a view that is to be read, nobody tells which layer it shows.
-pub(super) const LAYERED: &str = "its texture has several layers or mip levels; pass a texture of one";
-
-/// Has a texture more than one picture?
-pub(super) fn is_layered(texture: &wgpu::Texture) -> bool {
-    texture.depth_or_array_layers() != 1 || texture.mip_level_count() != 1
-}
 
 /// V on the screen: 8 bits a light and pixel.
 pub(super) const V: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
@@ -176,37 +168,8 @@ impl Screen {
         if texture.format() != self.depth_format {
             return Err(ShadowsError::DepthFormat { has: texture.format(), wanted: self.depth_format });
         }
-        let [width, height] = self.size_px;
-        if (texture.width(), texture.height()) != (width, height) {
-            let (has_width, has_height) = (texture.width(), texture.height());
-            return Err(ShadowsError::DepthSize { has_width, has_height, width, height });
-        }
-        if texture.sample_count() != 1 {
-            return Err(ShadowsError::Buffer {
-                what: "depth",
-                reason: "it has several samples a pixel; draw a depth with one beside it".into(),
-            });
-        }
-        if is_read && is_layered(texture) {
-            return Err(ShadowsError::Buffer { what: "depth", reason: LAYERED.into() });
-        }
-        if super::foreign::is_foreign_depth(device, view, texture.format()) {
-            return Err(ShadowsError::ForeignDevice { what: "depth" });
-        }
-        if is_read && !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-            return Err(ShadowsError::Buffer {
-                what: "depth",
-                reason:
-                    "soft volumes read it, and it was made without TEXTURE_BINDING; add that to its usage"
-                        .into(),
-            });
-        }
-        let read = is_read.then(|| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                aspect: wgpu::TextureAspect::DepthOnly,
-                ..Default::default()
-            })
-        });
+        depth::check(device, view, self.size_px, is_read)?;
+        let read = is_read.then(|| depth::readable(view));
         self.checked = Some((view.clone(), read));
         Ok(())
     }

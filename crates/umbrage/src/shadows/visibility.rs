@@ -1,8 +1,7 @@
 //! V of every light for every pixel, found from the caller's depth: for renderers that light later and add nothing to their shaders.
 
 use super::handles::index;
-use super::screen::{LAYERED, is_layered};
-use super::{Frame, Shadows, ShadowsError};
+use super::{Frame, Shadows, ShadowsError, depth};
 use crate::layers::Layers;
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
@@ -117,11 +116,8 @@ impl Visibility {
         colored: bool,
     ) -> Result<(), ShadowsError> {
         if self.group.as_ref().is_none_or(|(known, _)| known != view) {
-            check(device, frame, view)?;
-            let read = view.texture().create_view(&wgpu::TextureViewDescriptor {
-                aspect: wgpu::TextureAspect::DepthOnly,
-                ..Default::default()
-            });
+            depth::check(device, view, frame.size_px.to_array(), true)?;
+            let read = depth::readable(view);
             let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("umbrage visibility"),
                 layout: &self.layout,
@@ -149,32 +145,6 @@ impl Visibility {
         }
         Ok(())
     }
-}
-
-fn check(device: &wgpu::Device, frame: &Frame, view: &wgpu::TextureView) -> Result<(), ShadowsError> {
-    let texture = view.texture();
-    let refuse = |reason: &str| ShadowsError::Buffer { what: "depth", reason: reason.to_owned() };
-    if !texture.format().has_depth_aspect() {
-        return Err(refuse("its format has no depth; pass the depth that surfaces were drawn with"));
-    }
-    if texture.sample_count() != 1 {
-        return Err(refuse("it has several samples a pixel; draw a depth with one beside it"));
-    }
-    if !texture.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-        return Err(refuse("it was made without TEXTURE_BINDING; add that to its usage"));
-    }
-    if is_layered(texture) {
-        return Err(refuse(LAYERED));
-    }
-    let (has_width, has_height) = (texture.width(), texture.height());
-    if [has_width, has_height] != frame.size_px.to_array() {
-        let (width, height) = (frame.size_px.x, frame.size_px.y);
-        return Err(ShadowsError::DepthSize { has_width, has_height, width, height });
-    }
-    if super::foreign::is_foreign_depth(device, view, texture.format()) {
-        return Err(ShadowsError::ForeignDevice { what: "depth" });
-    }
-    Ok(())
 }
 
 impl Shadows {
